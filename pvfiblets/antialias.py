@@ -13,13 +13,11 @@ __all__ = ["MODES", "REFINED", "VARIABLE", "check_antialias", "default_antialias
 
 MODES = ("off", "coverage", "refined")
 
-REFINED = 16
-"""Samples of a pixel in refined pictures."""
+REFINED = 16  # samples of a pixel in refined pictures
 
 MOST = 256
 
-VARIABLE = "PVFIBLETS_ANTIALIAS"
-"""Environment variable that names another default."""
+VARIABLE = "PVFIBLETS_ANTIALIAS"  # environment variable that names another default
 
 
 def default_antialias() -> str | int:

@@ -13,36 +13,21 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["MODES", "SHADERS", "ColourMode", "glsl_source"]
-
 
 @dataclass(frozen=True)
 class ColourMode:
-    """The source of lines' colours.
+    """The source of lines' colours."""
 
-    Attributes
-    ----------
-    name : str
-        Of `pvfiblets.mappers.Colouring.mode`.
-    doc : str
-    numbers : {'', 'lines', 'points', 'pixels'}
-        What has a number or a colour each; ``''`` where colours need none.
-    table : bool
-        Whether a look-up table maps numbers.
-    reads : {'', 'position', 'colours'}
-        Texture of the G-buffer that holds the number or the colour of a pixel.
-    shader : str
-        File of ``shaders/colour``; `name` by default. Colours of lines are mapped on the CPU, so their modes share one.
-    of_directions : callable, optional
-        ``(n, 3)`` unit vectors to ``(n, 3)`` colours from 0 to 1. `scalars` then takes `name`.
-    """
-
-    name: str
+    name: str  # of `pvfiblets.mappers.Colouring.mode`
     doc: str
+    # the things that have a number or a colour each; `''` where colours need none
     numbers: Literal["", "lines", "points", "pixels"] = ""
-    table: bool = False
+    table: bool = False  # whether a look-up table maps numbers
+    # texture of the G-buffer that holds the number or the colour of a pixel
     reads: Literal["", "position", "colours"] = ""
+    # file of `shaders/colour`; `name` by default. Colours of lines are mapped on the CPU, so their modes share one.
     shader: str = ""
+    # `(n, 3)` unit vectors to `(n, 3)` colours from 0 to 1. `scalars` then takes `name`.
     of_directions: Callable[[npt.NDArray[Any]], npt.NDArray[Any]] | None = None
 
     def __post_init__(self) -> None:
@@ -65,11 +50,9 @@ _ALL = (
     ColourMode("pixel_count", "the lines of a pixel through a table", "pixels", table=True, shader="point_scalar"),
 )
 
-MODES = {mode.name: mode for mode in _ALL}
-"""Every mode by its name."""
+MODES = {mode.name: mode for mode in _ALL}  # every mode by its name
 
-SHADERS = {mode.shader: MODES[mode.shader] for mode in _ALL}
-"""Modes that have a file of shaders."""
+SHADERS = {mode.shader: MODES[mode.shader] for mode in _ALL}  # modes that have a file of shaders
 
 
 def glsl_source() -> str:

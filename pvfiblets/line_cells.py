@@ -15,10 +15,7 @@ if TYPE_CHECKING:
 
     from pvfiblets.streamlines import Streamlines
 
-__all__ = ["NOT_LINES", "field_of", "parts_of_cells", "parts_of_polydata", "polydata_of"]
-
-NOT_LINES = "cells that are not lines"
-"""Why cells were left out, of ``dropped``."""
+NOT_LINES = "cells that are not lines"  # why cells were left out, of `dropped`
 _GROUP = "groups/"
 _PER_GROUP = "per_group/"
 _GROUPS_OF = "groups_of"
@@ -106,7 +103,7 @@ def parts_of_cells(
     field: Mapping[str, Array] | None = None,
     space_name: Space | None = None,
 ) -> dict[str, Any]:
-    """Return arguments of `Streamlines` of cells that refer to points by index; parameters as of `from_cells`."""
+    """Return arguments of `Streamlines` of cells that refer to points by index, as VTK stores lines."""
     dropped: dict[str, int] = {}
     if other_cells:
         dropped[NOT_LINES] = other_cells

@@ -35,40 +35,21 @@ _EXPECTED = (
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Points and the lines through them.
+    """Points and the lines through them."""
 
-    Parameters
-    ----------
-    points : ndarray
-        ``(n_points, 3)`` float64, mm; or float32, if that was given and :func:`gather` may keep it.
-    ids : ndarray
-        ``(n_ids,)`` int64: the points of all lines, one line after the other.
-    offsets : ndarray
-        ``(n_lines + 1,)`` int64: line ``i`` goes through ``ids[offsets[i]:offsets[i + 1]]``.
-    point_data, line_data : mapping of str to array
-        One row per point, and per tube.
-    order : ndarray, optional
-        ``(n_segments,)`` int64: where the source has each segment, for sources that list segments. None: line by line.
-    tube_of : ndarray, optional
-        ``(n_segments,)`` int64, in the source's order: the tube of each segment, where tubes are not the lines.
-    n_tubes : int
-        Tubes, those without segments included.
-    given : ndarray, optional
-        ``(n_tubes,)`` int64: the line of the source that each tube is a piece of. None: lines are whole.
-    n_given : int, optional
-        Lines of the source, where some were cut.
-    """
-
-    points: npt.NDArray[Any]
-    ids: Ints
-    offsets: Ints
-    n_tubes: int
-    point_data: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+    points: npt.NDArray[Any]  # `(n_points, 3)` float64, mm; or float32, if that was given and `gather` may keep it
+    ids: Ints  # `(n_ids,)` int64: the points of all lines, one line after the other
+    offsets: Ints  # `(n_lines + 1,)` int64: line `i` goes through `ids[offsets[i]:offsets[i + 1]]`
+    n_tubes: int  # tubes, those without segments included
+    point_data: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)  # one row per point, and per tube
     line_data: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+    # `(n_segments,)` int64: where the source has each segment, for sources that list segments. None: line by line.
     order: Ints | None = None
+    # `(n_segments,)` int64, in the source's order: the tube of each segment, where tubes are not the lines
     tube_of: Ints | None = None
+    # `(n_tubes,)` int64: the line of the source that each tube is a piece of. None: lines are whole.
     given: Ints | None = None
-    n_given: int | None = None
+    n_given: int | None = None  # lines of the source, where some were cut
 
     def __post_init__(self) -> None:
         finite = self.points[np.isfinite(self.points)]
@@ -98,10 +79,8 @@ class Lines:
         return int(np.searchsorted(self.offsets, row, side="right")) - 1
 
     def segments(self) -> tuple[Ints, Ints]:
-        """Return ``(n_segments, 2)`` rows of `ids` and ``(n_segments,)`` tubes.
-
-        A line of one point has one segment, from its point to itself.
-        """
+        """Return ``(n_segments, 2)`` rows of `ids` and ``(n_segments,)`` tubes."""
+        # A line of one point has one segment, from its point to itself.
         counts = self.counts
         starts = np.ones(len(self.ids), bool)
         starts[self.offsets[1:][counts > 1] - 1] = False
@@ -119,19 +98,12 @@ class Lines:
 
 @dataclass(frozen=True, eq=False)
 class SourceData:
-    """All numbers and groups of the lines that something was made of, for criteria.
+    """All numbers and groups of the lines that something was made of, for criteria."""
 
-    Parameters
-    ----------
-    per_point, per_line : mapping of str to ndarray
-        ``(n_points,)`` numbers, and arrays with a row for each line.
-    groups : mapping of str to ndarray
-        Numbers of lines.
-    """
-
+    # `(n_points,)` numbers, and arrays with a row for each line
     per_point: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
     per_line: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
-    groups: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+    groups: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)  # numbers of lines
 
     @classmethod
     def of_lines(cls, lines: Lines, source: Any, rows: Ints | None) -> SourceData:
@@ -315,11 +287,9 @@ def _from_segments(points: npt.NDArray[Any], segments: Ints) -> Lines:
 
 
 def _before(segments: Ints, n_points: int) -> Ints:
-    """The segment that each one goes on from, itself for none.
-
-    It is the only one that ends where this one starts, if no other starts there: where more than two meet, the data do
-    not show which of them go on as one, and the order in which they are listed must not decide it.
-    """
+    """The segment that each one goes on from, itself for none."""
+    # It is the only one that ends where this one starts, if no other starts there: where more than two meet, the data
+    # do not show which of them go on as one, and the order in which they are listed must not decide it.
     n = len(segments)
     own = np.arange(n)
     start, end = segments.T
@@ -368,10 +338,8 @@ def with_values(source: Any, path: str | PathLike[str]) -> tuple[Streamlines, st
 
 
 def told_lines(source: Any) -> Any:
-    """Return the Streamlines of another library's object or of a MultiBlock, with its data; all else as it is.
-
-    PolyData and grids stay: their lines may share points, as at bifurcations.
-    """
+    """Return the Streamlines of another library's object or of a MultiBlock, with its data; all else as it is."""
+    # PolyData and grids stay: their lines may share points, as at bifurcations.
     from pvfiblets.other_libraries import streamlines_of
 
     if hasattr(source, "IsA") and not source.IsA("vtkMultiBlockDataSet"):

@@ -18,8 +18,6 @@ from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.ragged import offsets_from_counts
 from pvfiblets.support.vtk_space import Space, space_of_dataset, to_ras
 
-__all__ = ["EXPECTED", "lines_of_grid", "streamlines_of"]
-
 EXPECTED = (
     "a path, FibletSet, Streamlines, PolyData with lines, MultiBlock or UnstructuredGrid of them, a Tractogram or "
     "tractogram file of nibabel, a StatefulTractogram or Streamlines of dipy, a TrxFile, or a list of (n, 3) arrays"

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, cast, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pvfiblets.line_cells import field_of, parts_of_cells, parts_of_polydata, polydata_of
+from pvfiblets.line_cells import field_of, parts_of_polydata, polydata_of
 from pvfiblets.support.ragged import (
     Array,
     Floats,
@@ -39,9 +39,8 @@ if TYPE_CHECKING:
     from pvfiblets.query.bundles.clusters import Clusters
     from pvfiblets.query.bundles.similar import Similar
     from pvfiblets.query.measures.table import Table
-    from pvfiblets.support.vtk_space import Space
 
-__all__ = ["Streamlines", "blocks", "from_cells", "offsets_from_counts"]
+__all__ = ["Streamlines", "blocks", "offsets_from_counts"]
 
 
 class Streamlines:
@@ -376,23 +375,3 @@ class Streamlines:
     def field_data(self) -> dict[str, Array]:
         """Return groups, group data, affine and space as flat named arrays (see :meth:`to_polydata`)."""
         return field_of(self)
-
-
-def from_cells(
-    points: Array,
-    offsets: Ints,
-    connectivity: Ints,
-    point_data: Mapping[str, Array],
-    cell_data: Mapping[str, Array],
-    *,
-    other_cells: int = 0,
-    field: Mapping[str, Array] | None = None,
-    space_name: Space | None = None,
-) -> Streamlines:
-    """Streamlines from cells that refer to points by index, as VTK stores lines."""
-    return Streamlines(
-        **parts_of_cells(
-            points, offsets, connectivity, point_data, cell_data,
-            other_cells=other_cells, field=field, space_name=space_name,
-        )
-    )  # fmt: skip

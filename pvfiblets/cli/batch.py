@@ -11,8 +11,6 @@ from pvfiblets.cli.files import print_json, show_progress, which_per_point
 from pvfiblets.cli.pipes import add_image_options, add_space_option, add_surface_option
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
-__all__ = ["add_options", "batch"]
-
 _ABOUT = {
     "convert": "compress each file, or write it in another format",
     "verify": "check .fiblets files against their checksums, and against their originals",

@@ -39,11 +39,9 @@ def bytes_of_file(text: str) -> int:
 
 @contextmanager
 def held_to(most: str | None) -> Iterator[None]:
-    """Limit the memory of this process to ``--max-memory``.
-
-    By default it may take half of the machine's memory beyond its own: a command that runs within a larger program
-    without a limit is not refused for that.
-    """
+    """Limit the memory of this process to ``--max-memory``."""
+    # By default it may take half of the machine's memory beyond its own: a command that runs within a larger program
+    # without a limit is not refused for that.
     from pvfiblets.support import memory
 
     if most is None:

@@ -7,8 +7,6 @@ from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from typing import Any
 
-__all__ = ["Parser"]
-
 
 class Parser(argparse.ArgumentParser):
     """argparse's, whose errors name the option or command that is spelt most alike, and the command they are of."""

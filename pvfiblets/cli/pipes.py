@@ -20,8 +20,6 @@ from pvfiblets.support.addresses import is_url
 from pvfiblets.support.nifti_space import MATRICES, UNITS
 from pvfiblets.support.whole_files import naming_target
 
-__all__ = ["Pipes", "add_format_option", "add_image_options", "add_space_option", "add_surface_option"]
-
 _IN, _OUT = "standard input", "standard output"
 
 
@@ -67,20 +65,10 @@ def add_surface_option(parser: argparse.ArgumentParser) -> None:
 
 
 class Pipes:
-    """Standard input and output of one command, as files; a context manager.
-
-    Parameters
-    ----------
-    options : dict
-        Of the command. Taken out are ``pipes`` and ``format``; in the context, temporary files stand for ``-``.
-
-    Raises
-    ------
-    ValueError
-        On entering: if a format is missing or of no use, or one standard input is to be two files.
-    """
+    """Standard input and output of one command, as files; a context manager."""
 
     def __init__(self, options: dict[str, Any]) -> None:
+        # of the command. Taken out are `pipes` and `format`; in the context, temporary files stand for `-`.
         self._options = options
         self._reads, self._writes, self._usual = options.pop("pipes", ((), None, None))
         self._formats: list[str] = [f".{given.lstrip('.').lower()}" for given in options.pop("format", [])]

@@ -6,8 +6,6 @@ from typing import Any
 
 from pvfiblets.query.measures.sample_files import write_samples
 
-__all__ = ["sample"]
-
 
 def sample(source: str, image: str, target: str, **how: Any) -> None:
     """Write the values of an image along streamlines, or the streamlines with these."""

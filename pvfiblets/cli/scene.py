@@ -19,12 +19,10 @@ if TYPE_CHECKING:
 
 __all__ = ["Wishes", "add_options", "cut_and_filter", "open_session", "options_of"]
 
-KINDS = ("lines", "volumes", "meshes")
-"""What ``--clip`` cuts, by ``of=``."""
+KINDS = ("lines", "volumes", "meshes")  # what `--clip` cuts, by `of=`
 
 Words = Sequence[Sequence[str]]
-Wishes = Mapping[str, Any]
-"""Options of :func:`add_options` by their names."""
+Wishes = Mapping[str, Any]  # options of `add_options` by their names
 
 
 def add_options(parser: Any) -> None:

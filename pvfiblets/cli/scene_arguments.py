@@ -9,8 +9,6 @@ from pvfiblets.cli.pipes import add_format_option, add_image_options, add_space_
 from pvfiblets.cli.scene import add_options
 from pvfiblets.cli.values import antialias, count, positive, size
 
-__all__ = ["LOOKS", "VIEWS", "add_page", "add_screenshot", "add_serve", "add_show"]
-
 # Those of pvfiblets.plotting.fiblets.looks, without loading it.
 LOOKS = ("plain", "illuminated", "tubes", "glass", "density", "ink", "studio")
 VIEWS = ("axial", "coronal", "sagittal", "inferior", "posterior", "right", "oblique")

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import argparse
 
-__all__ = ["angle", "antialias", "count", "positive", "size"]
-
 
 def antialias(text: str) -> str | int:
     """Parse how edges are smoothed."""

@@ -38,8 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BatchResult", "batch"]
 
-LEAST_MEMORY = 512 << 20
-"""Bytes that an idle worker with its libraries has, or nearly."""
+LEAST_MEMORY = 512 << 20  # bytes that an idle worker with its libraries has, or nearly
 _SCRATCH = re.compile(r"\.batch-(?P<host>.*)-(?P<pid>\d+)-[0-9a-f]{8}")
 
 

@@ -17,10 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["SHARE", "connected", "default_workers"]
 
-SHARE = 0.8
-"""Of the machine's memory, for all workers together."""
-DEATHS = 10
-"""Workers that may die with a task before it is given up."""
+SHARE = 0.8  # of the machine's memory, for all workers together
+DEATHS = 10  # workers that may die with a task before it is given up
 DASHBOARD = 8787
 ANSWER_WITHIN = 30.0  # seconds
 

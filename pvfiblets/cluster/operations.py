@@ -164,10 +164,8 @@ def _chosen(source: Path, wanted: Any, counts: list[int]) -> Iterator[Streamline
 
 
 def profile(source: Path, target: None = None, *, values: str, positions: int = 100) -> Columns:
-    """Mean values at places along each group of streamlines, or along all; as :func:`.query.profile.mean_profile`.
-
-    `values` names an array or a computed measure, or is an image, which is sampled at the points.
-    """
+    """Mean values at places along each group of streamlines, or along all; as :func:`.query.profile.mean_profile`."""
+    # `values` names an array or a computed measure, or is an image, which is sampled at the points.
     del target
     from pvfiblets.images.sources import is_image
     from pvfiblets.query.measures.profile import mean_profile
@@ -277,29 +275,16 @@ def _errors(result: dict[str, Any]) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Operation:
-    """An operation, its result, and its options.
-
-    Attributes
-    ----------
-    name : str
-    run : callable
-        ``(source, target, **options) -> columns``.
-    check_file : callable or None
-        Refuses options whose file, with the suffix ``to``, cannot be written; None if it makes no file.
-    takes : tuple of str
-        Suffixes of sources; any format if empty.
-    paths : tuple of str
-        Options that may be paths, in which names between braces stand for what a source's name says.
-    needs : tuple of tuple of str
-        Options; exactly one must be given.
-    """
+    """An operation, its result, and its options."""
 
     name: str
-    run: Callable[..., Columns]
+    run: Callable[..., Columns]  # `(source, target, **options) -> columns`
+    # refuses options whose file, with the suffix `to`, cannot be written; None if it makes no file
     check_file: Callable[[Mapping[str, Any]], object] | None = None
-    takes: tuple[str, ...] = ()
+    takes: tuple[str, ...] = ()  # suffixes of sources; any format if empty
+    # options that may be paths, in which names between braces stand for what a source's name says
     paths: tuple[str, ...] = ()
-    needs: tuple[tuple[str, ...], ...] = ()
+    needs: tuple[tuple[str, ...], ...] = ()  # options; exactly one must be given
 
     def defaults(self) -> dict[str, Any]:
         """Options and their values where none are given."""

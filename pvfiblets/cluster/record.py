@@ -41,19 +41,10 @@ def fingerprint(path: Path) -> tuple[int, int]:
 
 @dataclass(frozen=True)
 class Output:
-    """A file that a task made.
+    """A file that a task made."""
 
-    Attributes
-    ----------
-    path : str
-        Relative to the batch's folder.
-    size, changed : int
-        As :func:`fingerprint`.
-    sha256 : str
-    """
-
-    path: str
-    size: int
+    path: str  # relative to the batch's folder
+    size: int  # as `fingerprint`
     changed: int
     sha256: str
 
@@ -76,31 +67,16 @@ class Output:
 
 @dataclass(frozen=True)
 class Entry:
-    """What became of one source.
+    """What became of one source."""
 
-    Attributes
-    ----------
-    name : str
-        The source, below the folder that all sources have in common.
-    asked : str
-        Hash of the operation and its options.
-    size, changed, sha256
-        Of the source, as of :class:`Output`.
-    outputs : tuple of Output
-    error : str
-        One sentence; empty where all went well.
-    seconds : float
-        That the task took.
-    """
-
-    name: str
-    asked: str
-    size: int = 0
+    name: str  # the source, below the folder that all sources have in common
+    asked: str  # hash of the operation and its options
+    size: int = 0  # of the source, as of `Output`
     changed: int = 0
     sha256: str = ""
     outputs: tuple[Output, ...] = ()
-    error: str = ""
-    seconds: float = 0.0
+    error: str = ""  # one sentence; empty where all went well
+    seconds: float = 0.0  # that the task took
     extra: dict[str, Any] = field(default_factory=dict)
 
     def holds(self, source: Path, asked: str, folder: Path) -> bool:
@@ -115,16 +91,10 @@ class Entry:
 
 
 class Record:
-    """The file of a batch's entries.
-
-    Parameters
-    ----------
-    path : Path
-        Made when something is added to it.
-    """
+    """The file of a batch's entries."""
 
     def __init__(self, path: Path) -> None:
-        self.path = path
+        self.path = path  # made when something is added to it
         self.entries: dict[str, Entry] = {}
         self._stream: BinaryIO | None = None
         if path.exists():

@@ -21,18 +21,10 @@ class NoSourceError(FibletsError, ValueError):
 
 @dataclass(frozen=True)
 class SourceFile:
-    """A file.
+    """A file."""
 
-    Attributes
-    ----------
-    path : Path
-        Absolute.
-    name : str
-        Below the folder that all sources have in common, with slashes: ``sub-01/dwi/sub-01_tractography.trk``.
-    """
-
-    path: Path
-    name: str
+    path: Path  # absolute
+    name: str  # below the folder that all sources have in common, with slashes: `sub-01/dwi/sub-01_tractography.trk`
 
     @property
     def stem(self) -> str:

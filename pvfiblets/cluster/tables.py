@@ -13,10 +13,7 @@ import numpy as np
 
 from pvfiblets.support.whole_files import replacing
 
-__all__ = ["Columns", "join_parts", "write_part"]
-
-Columns = Mapping[str, Any]
-"""By name: numbers and texts for every row, or one for all rows."""
+Columns = Mapping[str, Any]  # by name: numbers and texts for every row, or one for all rows
 
 
 def write_part(path: Path, said: Mapping[str, str], columns: Columns) -> None:
@@ -36,10 +33,8 @@ def _single(value: Any) -> bool:
 
 
 def join_parts(parts: Iterable[Path], target: Path) -> int:
-    """Write the rows of all parts to one file, which appears when it is whole.
-
-    A column that a part lacks is null in its rows.
-    """
+    """Write the rows of all parts to one file, which appears when it is whole."""
+    # A column that a part lacks is null in its rows.
     import pyarrow as pa
     from pyarrow import parquet
 

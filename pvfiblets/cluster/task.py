@@ -31,57 +31,28 @@ from .operations import OPERATIONS
 from .record import Entry, Output, checksum, fingerprint
 from .tables import write_part
 
-__all__ = ["Job", "run"]
-
 logger = logging.getLogger(__name__)
 _TURN = threading.Lock()
 
 
 @dataclass(frozen=True)
 class Job:
-    """What is to be done to one file.
-
-    Attributes
-    ----------
-    operation : str
-    source : str
-        Absolute path.
-    name : str
-        The source below the folder that all have in common.
-    target, rows : str
-        What is made, below `folder`; `target` is empty where there is no file.
-    folder, scratch : str
-        Where results go, and where they are made.
-    options : dict
-        Of the operation.
-    said : dict of str to str
-        What the source's name says.
-    asked : str
-        Hash of the request.
-    memory : int or None
-        Bytes that the process may have meanwhile.
-    images : tuple
-        What places images of NIfTI, as of :func:`pvfiblets.nifti_space`.
-    space : str or None
-        Of files of VTK that name none.
-    tkras : bool
-        Whether FreeSurfer's surfaces stay where their files have them.
-    """
+    """What is to be done to one file."""
 
     operation: str
-    source: str
-    name: str
-    target: str
+    source: str  # absolute path
+    name: str  # the source below the folder that all have in common
+    target: str  # the result, below `folder`; empty where there is no file
     rows: str
-    folder: str
+    folder: str  # where results go, and where they are made
     scratch: str
-    options: dict[str, Any]
-    said: dict[str, str] = field(default_factory=dict)
-    asked: str = ""
-    memory: int | None = None
-    images: tuple[Matrix | None, Units] = (None, "mm")
-    space: Space | None = None
-    tkras: bool = False
+    options: dict[str, Any]  # of the operation
+    said: dict[str, str] = field(default_factory=dict)  # what the source's name says
+    asked: str = ""  # hash of the request
+    memory: int | None = None  # bytes that the process may have meanwhile
+    images: tuple[Matrix | None, Units] = (None, "mm")  # what places images of NIfTI, as of `pvfiblets.nifti_space`
+    space: Space | None = None  # of files of VTK that name none
+    tkras: bool = False  # whether FreeSurfer's surfaces stay where their files have them
 
 
 def run(job: Job) -> Entry:

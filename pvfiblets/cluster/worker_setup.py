@@ -5,8 +5,6 @@ from __future__ import annotations
 import signal
 from typing import Any
 
-__all__ = ["dask_setup"]
-
 
 def dask_setup(worker: Any) -> None:
     """Leave interrupts to the batch: a terminal sends Ctrl-C to all processes, and one of them says what came of it."""

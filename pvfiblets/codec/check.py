@@ -27,8 +27,6 @@ from .layout import (
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["check_file", "check_records", "code_bytes"]
-
 
 def code_bytes(decoding: npt.NDArray[np.uint32]) -> npt.NDArray[np.int64]:
     """Bytes of codes of each fiblet, ``(n,)``, from its ``decoding`` words ``(n, 3)``."""

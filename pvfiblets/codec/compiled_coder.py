@@ -33,25 +33,15 @@ def search_tables() -> tuple[npt.NDArray[Any], ...]:
 
 
 class CompiledCoder:
-    """Cuts and codes the streamlines of one chunk.
-
-    Parameters
-    ----------
-    points : numpy.ndarray
-        ``(n, 3)`` float32 or float64, mm.
-    offsets : numpy.ndarray
-        ``(n_streamlines + 1,)`` int64.
-    parameters : Parameters
-    bound : (float, float, float)
-        Only segments longer than the first (mm) count; sine of the largest angle, and its chord in the unit circle.
-    effort : {'fast', 'high'}
-    """
+    """Cuts and codes the streamlines of one chunk."""
 
     def __init__(
         self,
-        points: npt.NDArray[np.floating],
-        offsets: Ints,
+        points: npt.NDArray[np.floating],  # `(n, 3)` float32 or float64, mm
+        offsets: Ints,  # `(n_streamlines + 1,)` int64
         parameters: Parameters,
+        # only segments longer than the first (mm) count; sine of the largest angle, and its
+        # chord in the unit circle
         bound: tuple[float, float, float],
         effort: Literal["fast", "high"] = "fast",
     ) -> None:
@@ -72,11 +62,9 @@ class CompiledCoder:
         return slots, per
 
     def code_directions(self, slots: Ints, end: npt.NDArray[np.uint8], out: tuple[npt.NDArray[Any], ...]) -> None:
-        """Try to code every slot with direction bytes.
-
-        ``out`` is ``ok``, ``shape``, ``step``, ``cap``, ``radius`` (mm), ``end_words`` of ``m`` slots, and ``codes
-        (n,)``, where a slot's codes stand where its points stand.
-        """
+        """Try to code every slot with direction bytes."""
+        # `out` is `ok`, `shape`, `step`, `cap`, `radius` (mm), `end_words` of `m` slots, and `codes (n,)`, where a
+        # slot's codes stand where its points stand.
         p = self._parameters
         ok, shape, step, cap, radius, end_words, codes = out
         self._kernels.encode_directions(

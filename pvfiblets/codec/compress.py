@@ -24,22 +24,6 @@ from .record_writer import FibletChunk, RecordWriter, join
 if TYPE_CHECKING:
     from .encode import Effort
 
-__all__ = [
-    "CHUNK_POINTS",
-    "LARGEST_FIT",
-    "PerPoint",
-    "ValueBounds",
-    "check_exact",
-    "choose_per_point",
-    "code_chosen",
-    "compress",
-    "grows",
-    "is_plain",
-    "not_kept",
-    "split_chunks",
-    "value_coders",
-]
-
 CHUNK_POINTS = 2_000_000
 LARGEST_FIT = 16
 """Most bytes a point of per-point values where per_point is 'fit': a tensor at one byte a number, and some more."""

@@ -54,29 +54,16 @@ class Copies:
 
     Copy ``i`` is of streamline ``i % n_pool``. They stand in that order, or, with ``sequence``, all copies of one
     streamline before the next one's: the same copies, in an order that is compact in space where the sequence is.
-
-    Attributes
-    ----------
-    pool : FibletSet
-        Streamlines with points, in memory. Its grid must leave room: anchors moved by ``spread`` stay on it.
-    boxes : numpy.ndarray
-        ``(n_pool, 6)`` float64: least x, y, z and greatest x, y, z of each streamline's original points, mm.
-    n_streamlines : int
-        Number of copies, at least 1.
-    spread : float
-        Largest move along an axis, mm; moves are distributed as a triangle around 0.
-    seed : int
-        The same seed gives the same moves.
-    sequence : numpy.ndarray, optional
-        ``(n_pool,)`` int64: the pool's streamlines, each once.
     """
 
+    # streamlines with points, in memory. Its grid must leave room: anchors moved by `spread` stay on it.
     pool: FibletSet
+    # `(n_pool, 6)` float64: least x, y, z and greatest x, y, z of each streamline's original points, mm
     boxes: npt.NDArray[np.float64]
-    n_streamlines: int
-    spread: float
-    seed: int = 0
-    sequence: Ints | None = None
+    n_streamlines: int  # number of copies, at least 1
+    spread: float  # largest move along an axis, mm; moves are distributed as a triangle around 0
+    seed: int = 0  # the same seed gives the same moves
+    sequence: Ints | None = None  # `(n_pool,)` int64: the pool's streamlines, each once
 
     def __post_init__(self) -> None:
         if self.pool.rank_to_id is not None or not self.pool.n_streamlines:

@@ -22,10 +22,6 @@ if TYPE_CHECKING:
     from .fibletset import FibletSet
     from .point_values import PointValues
 
-__all__ = [
-    "decode_fiblets", "decoding_arrays", "decompress", "fixed", "held_in_bounds", "iter_chunks", "select_streamlines",
-]  # fmt: skip
-
 
 def select_streamlines(n: int, ids: Any) -> npt.NDArray[np.int64]:
     """Normalise a selection of ``n`` streamlines to indices."""
@@ -174,11 +170,9 @@ def iter_chunks(
 
 
 def held_in_bounds(fiblets: FibletSet, chunks: Iterable[Streamlines]) -> Iterator[Streamlines]:
-    """Bring decoded points that lie outside of the original points' bounds back to them, in place.
-
-    That brings them nearer to their originals, if anything. Programs such as dipy refuse a file whose points leave its
-    image, and originals do lie on its very edge.
-    """
+    """Bring decoded points that lie outside of the original points' bounds back to them, in place."""
+    # That brings them nearer to their originals, if anything. Programs such as dipy refuse a file whose points leave
+    # its image, and originals do lie on its very edge.
     edges, promise = np.reshape(fiblets.bounds, (3, 2)), fiblets.promise
     for chunk in chunks:
         for column, (low, high) in zip(chunk.points.T, edges.astype(chunk.points.dtype), strict=True):

@@ -93,12 +93,8 @@ def packed() -> npt.NDArray[np.uint32]:
 
 @cache
 def quaternions() -> npt.NDArray[np.float32]:
-    """The rotation that each code stands for, unpacked from :func:`packed`.
-
-    Notes
-    -----
-    The float32 operations and their order are as in ``shaders/fiblets/decode/words.glsl``.
-    """
+    """The rotation that each code stands for, unpacked from :func:`packed`."""
+    # The float32 operations and their order are as in `shaders/fiblets/decode/words.glsl`.
     words = packed()
     levels = np.stack([words & np.uint32(0xFFFF), words >> np.uint32(16)], axis=-1).astype(np.uint16).view(np.int16)
     parts = levels.astype(np.float32) * packed_scales()[:, None, None]

@@ -39,18 +39,11 @@ LONG_PART = 2_000_000  # points of a very long streamline that are coded at a ti
 
 @dataclass
 class Encoder(RecordWriter):
-    """Codes chunks of streamlines.
+    """Codes chunks of streamlines."""
 
-    Attributes
-    ----------
-    effort : {'fast', 'high'}
-        Greedy, or looking ahead with a beam.
-    max_angle : float, optional
-        Largest angle between true and drawn tangents, degrees, at the ends of segments longer than a pixel of a
-        full-screen view (:mod:`.turn_reference`); None leaves directions alone.
-    """
-
-    effort: Effort = "fast"
+    effort: Effort = "fast"  # greedy, or looking ahead with a beam
+    # largest angle between true and drawn tangents, degrees, at the ends of segments longer than a pixel of a
+    # full-screen view (`.turn_reference`); None leaves directions alone
     max_angle: float | None = DEFAULT_ANGLE
 
     def __post_init__(self) -> None:

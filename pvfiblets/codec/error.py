@@ -19,8 +19,6 @@ from .point_values import value_errors
 from .streamline_ranges import coded_rows
 from .tangents import pixel
 
-__all__ = ["CodingError", "ErrorTally", "measure_error"]
-
 _BINS = 20_000  # of the histogram that the percentile is read from: 5e-5 of the error bound each
 _PER_DEGREE = 100  # bins of the histogram of angles
 

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ..query.density.density_map import DensityMap
     from ..query.measures.table import Table
 
-__all__ = ["Condition", "FibletSet"]
-
 
 class Condition(Protocol):
     """A condition on streamlines, such as `pvfiblets.query.selection.predicates` makes; this room knows none itself."""

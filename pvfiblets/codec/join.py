@@ -20,8 +20,6 @@ from .restrict import Records, parts_of
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["concatenate"]
-
 
 def concatenate(sets: Iterable[FibletSet]) -> FibletSet:
     """Put sets behind each other."""

@@ -53,13 +53,9 @@ def ends_order(first: npt.ArrayLike, last: npt.ArrayLike) -> Ints:
 
 
 def hilbert_keys(cells: Ints, bits: int) -> npt.NDArray[np.uint64]:
-    """Distances along a Hilbert curve.
-
-    Notes
-    -----
-    Skilling, "Programming the Hilbert curve", AIP Conference Proceedings 707 (2004): undo the curve's rotations from
-    the coarsest bit to the finest, then Gray-decode across the coordinates, and interleave their bits.
-    """
+    """Distances along a Hilbert curve."""
+    # Skilling, "Programming the Hilbert curve", AIP Conference Proceedings 707 (2004): undo the curve's rotations from
+    # the coarsest bit to the finest, then Gray-decode across the coordinates, and interleave their bits.
     x = np.array(cells, np.int64).T.copy()
     d = len(x)
     for level in range(bits - 1, 0, -1):

@@ -58,32 +58,18 @@ Vector = npt.NDArray[np.float64]
 
 @dataclass
 class Survey:
-    """Result of a first pass over the data.
+    """Result of a first pass over the data."""
 
-    Attributes
-    ----------
-    lower, upper : numpy.ndarray
-        ``(3,)`` true bounds, mm.
-    longest : float
-        Longest segment, mm.
-    widest_end : float
-        Largest component of a vector between a streamline's last point and another of the last (at most) 60, mm.
-    sample : list of numpy.ndarray
-        Segments ``(n, 3)``, mm: every ``stride``-th, so few that memory stays bounded.
-    places : list of numpy.ndarray
-        Some points of each chunk ``(n, 3)``, mm.
-    n_points, n_streamlines : int
-        Totals.
-    """
-
-    lower: Vector = field(default_factory=lambda: np.full(3, np.inf))
+    lower: Vector = field(default_factory=lambda: np.full(3, np.inf))  # `(3,)` true bounds, mm
     upper: Vector = field(default_factory=lambda: np.full(3, -np.inf))
-    longest: float = 0.0
+    longest: float = 0.0  # longest segment, mm
+    # largest component of a vector between a streamline's last point and another of the last (at most) 60, mm
     widest_end: float = 0.0
+    # segments `(n, 3)`, mm: every `stride`-th, so few that memory stays bounded
     sample: list[npt.NDArray[np.float64]] = field(default_factory=list)
-    places: list[npt.NDArray[np.float64]] = field(default_factory=list)
+    places: list[npt.NDArray[np.float64]] = field(default_factory=list)  # some points of each chunk `(n, 3)`, mm
     stride: int = 1
-    n_points: int = 0
+    n_points: int = 0  # totals
     n_streamlines: int = 0
     values: dict[str, ValueSurvey] = field(default_factory=dict)
 
@@ -160,10 +146,8 @@ def _scan(
 
 
 def _scanned(offsets: npt.NDArray[np.int64]) -> Iterator[tuple[npt.NDArray[np.int64], bool]]:
-    """Yield the offsets of each block's streamlines; a very long one comes in parts that overlap.
-
-    And whether it goes on behind this part.
-    """
+    """Yield the offsets of each block's streamlines; a very long one comes in parts that overlap."""
+    # And whether it goes on behind this part.
     for a, b in blocks(offsets, BLOCK_POINTS):
         first, stop = int(offsets[a]), int(offsets[b])
         if b > a + 1 or not is_long(stop - first):
@@ -221,43 +205,23 @@ def bounds_of(found: Survey) -> tuple[float, float, float, float, float, float]:
 
 @dataclass(frozen=True)
 class Parameters:
-    """Numbers shared by all fiblets of a file; lengths in mm.
+    """Numbers shared by all fiblets of a file; lengths in mm."""
 
-    Attributes
-    ----------
-    origin, anchor_scale : tuple of float
-        An anchor ``q`` stands at ``origin + anchor_scale * q``.
-    anchor_bits : int
-        16 or 32 bits an axis.
-    step, step_lo, step_hi : float
-        Median step, and the least and greatest that a direction fiblet can name.
-    lattice : float
-        Edge of the lattice of the lattice kinds.
-    reach_scale : float
-        Unit of the capsules' radii.
-    end_scale : float
-        Unit of the streamlines' end vectors; above 0.
-    promise : float
-        No decoded point is farther from its original.
-    largest_radius : float
-        Half the chord and the capsule's radius together are no larger for any fiblet: each lies within a sphere of this
-        radius about the middle of its chord.
-    resampled : float
-        Distance that lines were resampled to, and 0 where the points are the source's. The error bound is then about
-        lines: no point of the decoded one is farther from the source's, and none of the source's from the decoded one.
-    """
-
-    origin: tuple[float, float, float]
+    origin: tuple[float, float, float]  # an anchor `q` stands at `origin + anchor_scale * q`
     anchor_scale: tuple[float, float, float]
-    anchor_bits: int
-    step: float
+    anchor_bits: int  # 16 or 32 bits an axis
+    step: float  # median step, and the least and greatest that a direction fiblet can name
     step_lo: float
     step_hi: float
-    lattice: float
-    reach_scale: float
-    end_scale: float
-    promise: float
+    lattice: float  # edge of the lattice of the lattice kinds
+    reach_scale: float  # unit of the capsules' radii
+    end_scale: float  # unit of the streamlines' end vectors; above 0
+    promise: float  # no decoded point is farther from its original
+    # half the chord and the capsule's radius together are no larger for any fiblet: each lies within a sphere of this
+    # radius about the middle of its chord
     largest_radius: float = 0.0
+    # distance that lines were resampled to, and 0 where the points are the source's. The error bound is then about
+    # lines: no point of the decoded one is farther from the source's, and none of the source's from the decoded one.
     resampled: float = 0.0
 
     @classmethod
@@ -339,12 +303,10 @@ def _anchor_error(extent: Vector, bits: int) -> float:
 
 
 def _default_promise(segments: Vector, step: float, extent: Vector) -> float:
-    """Greatest error in mm, for such segments in bounds of this extent.
-
-    Direction codes err by some hundredths of a step, and where steps are constant a finer bound would take a second
-    byte a point. Lattice codes err by all that they may: there a tenth of a long step shows. So it does in a view along
-    an axis whose unit dominates the others, as metres do degrees.
-    """
+    """Greatest error in mm, for such segments in bounds of this extent."""
+    # Direction codes err by some hundredths of a step, and where steps are constant a finer bound would take a second
+    # byte a point. Lattice codes err by all that they may: there a tenth of a long step shows. So it does in a view
+    # along an axis whose unit dominates the others, as metres do degrees.
     segments = segments[:: max(1, len(segments) // OF_VIEWS)]
     moving, diagonal = _moving(segments), math.hypot(*extent)
     even = moving.size and float((np.abs(moving - step) <= STEP_BAND * step).mean()) >= EVEN_SHARE

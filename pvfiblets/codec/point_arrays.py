@@ -16,11 +16,6 @@ import numpy.typing as npt
 from .fibletset import FibletSet
 from .point_values import code_values
 
-__all__ = [
-    "colour_columns", "colours_of_points", "packed_colours", "unit_colours", "with_coded_values", "with_point_colours",
-    "with_point_values",
-]  # fmt: skip
-
 
 def with_point_values(fiblets: FibletSet, name: str, values: npt.ArrayLike, bits: int = 8) -> FibletSet:
     """Return a set that shares the arrays of another one and has one with a number per point more."""
@@ -55,10 +50,8 @@ def unit_colours(name: str, colours: npt.ArrayLike) -> npt.NDArray[np.float32]:
 
 
 def with_point_colours(fiblets: FibletSet, name: str, colours: npt.ArrayLike) -> FibletSet:
-    """Return a set that shares the arrays of another one and has a colour per point more.
-
-    Each channel takes a byte a point, and is off by half of 1/255 at most.
-    """
+    """Return a set that shares the arrays of another one and has a colour per point more."""
+    # Each channel takes a byte a point, and is off by half of 1/255 at most.
     rows = fiblets.in_coded_order(unit_colours(name, colours))
     before = {name, *colour_columns(fiblets.per_point, name)}
     kept = {key: values for key, values in fiblets.per_point.items() if key not in before}

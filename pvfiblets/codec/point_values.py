@@ -43,38 +43,25 @@ __all__ = [
 Array = npt.NDArray[Any]
 Floats = npt.NDArray[np.float64]
 
-SPREAD = 100.0
-"""Factor between the percentiles of positive values from which on their logarithms count too."""
+SPREAD = 100.0  # factor between the percentiles of positive values from which on their logarithms count too
 SAMPLE = 1 << 16  # values of each array whose percentiles are taken
 CELLS = 12  # bits of a float32 that do not tell cells apart: each is 2 ** -11 of its values wide
 
 
 @dataclass(frozen=True)
 class PointValues:
-    """A value for each point of a set.
+    """A value for each point of a set."""
 
-    Attributes
-    ----------
-    codes : numpy.ndarray
-        ``(n_points,)`` uint8 or uint16 where there is a `table`; else the values themselves, of any type of numbers.
-    lo, hi : float
-        Least and largest finite value of the original.
-    max_error, mean_error : float
-        Differences to the finite values of the original, in their unit (measured, not estimated).
-    table : numpy.ndarray or None
-        ``(256,)`` or ``(65536,)``: what codes mean, in the original's type, rising as far as codes are used; of floats
-        the last is NaN.
-    reference : float
-        What graphics cards subtract first (:mod:`pvfiblets.support.value_reference`).
-    """
-
+    # `(n_points,)` uint8 or uint16 where there is a `table`; else the values themselves, of any type of numbers
     codes: Array
-    lo: float
+    lo: float  # least and largest finite value of the original
     hi: float
-    max_error: float
+    max_error: float  # differences to the finite values of the original, in their unit (measured, not estimated)
     mean_error: float = 0.0
+    # `(256,)` or `(65536,)`: what codes mean, in the original's type, rising as far as codes are used; of floats the
+    # last is NaN
     table: Array | None = None
-    reference: float = 0.0
+    reference: float = 0.0  # what graphics cards subtract first (`pvfiblets.support.value_reference`)
 
     @property
     def dtype(self) -> np.dtype[Any]:
@@ -359,17 +346,11 @@ def linear_table(lo: float, hi: float, bits: int) -> Array:
     return np.append(even, np.nan).astype(np.float32)
 
 
-def code_values(
-    values: npt.ArrayLike,
-    bits: int = 8,
-    max_error: float | None = None,
-    *,
-    exact: bool = False,
-) -> PointValues:
+def code_values(values: npt.ArrayLike, bits: int = 8, *, exact: bool = False) -> PointValues:
     """Code one value per point."""
     survey = ValueSurvey()
     survey.add(values)
-    return survey.coder(bits, max_error, exact=exact).code(values)
+    return survey.coder(bits, exact=exact).code(values)
 
 
 def as_codes(values: npt.ArrayLike, most_bits: int = 16) -> tuple[PointValues, Array]:

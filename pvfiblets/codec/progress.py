@@ -8,8 +8,6 @@ from typing import TypeAlias
 from ..streamlines import Streamlines
 from ..support.progress_bar import progress_bar
 
-__all__ = ["Progress", "shown"]
-
 Progress: TypeAlias = bool | Callable[[str, float], None]
 """Whether to show a bar; or a function of the step's name and finished share, 0 to 1."""
 

@@ -12,8 +12,6 @@ from .capsules import capsule_ends
 from .layout import PAGE, PAGE_BITS, WORDS, pack, unpack_ends
 from .parameters import Parameters
 
-__all__ = ["FibletChunk", "RecordWriter", "join"]
-
 
 @dataclass
 class FibletChunk:
@@ -29,24 +27,13 @@ class FibletChunk:
 
 @dataclass
 class RecordWriter:
-    """Lays out records, keeping count across chunks.
+    """Lays out records, keeping count across chunks."""
 
-    Attributes
-    ----------
-    parameters : Parameters
-        Shared numbers of the file; ``largest_radius`` grows as chunks are added.
-    pages : list of tuple of int
-        Rank, code byte and point at which each page begun so far starts.
-    empty : list of numpy.ndarray
-        Streamlines without points.
-    n_fiblets, n_ranks, n_codes, n_points, n_streamlines : int
-        Totals so far; ranks count the streamlines that have points.
-    """
-
-    parameters: Parameters
+    parameters: Parameters  # shared numbers of the file; `largest_radius` grows as chunks are added
+    # rank, code byte and point at which each page begun so far starts
     pages: list[tuple[int, int, int]] = field(default_factory=list, kw_only=True)
-    empty: list[npt.NDArray[np.int64]] = field(default_factory=list, kw_only=True)
-    n_fiblets: int = field(default=0, kw_only=True)
+    empty: list[npt.NDArray[np.int64]] = field(default_factory=list, kw_only=True)  # streamlines without points
+    n_fiblets: int = field(default=0, kw_only=True)  # totals so far; ranks count the streamlines that have points
     n_ranks: int = field(default=0, kw_only=True)
     n_codes: int = field(default=0, kw_only=True)
     n_points: int = field(default=0, kw_only=True)

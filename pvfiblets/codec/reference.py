@@ -256,10 +256,8 @@ def _halvings(
 
 
 def plan_lattice(points: Array, anchors: Array, h: float, turns: Turns | None = None) -> list[int]:
-    """Split points into lattice fiblets so that their bytes are fewest among all splits by repeated halving.
-
-    Fewer fiblets that turn a segment too far come before fewer bytes.
-    """
+    """Split points into lattice fiblets so that their bytes are fewest among all splits by repeated halving."""
+    # Fewer fiblets that turn a segment too far come before fewer bytes.
 
     def best(a: int, b: int, depth: int) -> tuple[int, list[int]]:
         count = b - a

@@ -11,8 +11,6 @@ import numpy as np
 from ..streamlines import Streamlines
 from .jit import kernel, parallel_kernel
 
-__all__ = ["resample"]
-
 
 def resample(streamlines: Streamlines, step: float, within: float = math.inf) -> Streamlines:
     """Resample streamlines at equal arc length, and where that would cut corners keep points of these."""

@@ -34,14 +34,10 @@ BEHIND = 64  # pages read of a mapped file before their memory is given back
 
 
 def even_share(fiblets: FibletSet, share: float) -> Ints:
-    """Choose an even share of the streamlines, always the same one.
-
-    Notes
-    -----
-    Rank ``r`` is chosen where the fraction of ``r`` times the golden ratio lies below the share: these fractions are
-    spread more evenly than random numbers, over every stretch of consecutive ranks, and streamlines that are coded one
-    after another may lie side by side (:mod:`.ordering`).
-    """
+    """Choose an even share of the streamlines, always the same one."""
+    # Rank `r` is chosen where the fraction of `r` times the golden ratio lies below the share: these fractions are
+    # spread more evenly than random numbers, over every stretch of consecutive ranks, and streamlines that are coded
+    # one after another may lie side by side (`.ordering`).
     if not 0.0 <= share <= 1.0:
         raise ValueError(f"share is {share}; a number from 0 to 1 is needed")
     parts = []
@@ -59,18 +55,7 @@ def restrict(fiblets: FibletSet, ids: Any) -> FibletSet:
 
 
 class Restriction:
-    """The size of :func:`restrict`'s result, known before it is made.
-
-    Parameters
-    ----------
-    fiblets, ids
-        As for :func:`restrict`, with the same errors. Records are read, codes are not.
-
-    Attributes
-    ----------
-    n_ranks, n_fiblets, n_codes, n_points : int
-        Streamlines that have points, fiblets, bytes of codes, and points.
-    """
+    """The size of :func:`restrict`'s result, known before it is made, with the same errors; codes are not read."""
 
     def __init__(self, fiblets: FibletSet, ids: Any) -> None:
         chosen = select_streamlines(fiblets.n_streamlines, ids)
@@ -147,26 +132,14 @@ def _kept_ranks(fiblets: FibletSet, chosen: Ints) -> Mask:
 
 @dataclass(frozen=True)
 class _Part:
-    """Fiblets of one page that are taken.
+    """Fiblets of one page that are taken."""
 
-    Attributes
-    ----------
-    rows : numpy.ndarray
-        ``(n,)`` which fiblets, counted over the whole set.
-    decoding, begins : numpy.ndarray
-        Their words ``(n, 3)``, and which of them begin a streamline.
-    sizes, counts : numpy.ndarray
-        Their code bytes and points.
-    codes, points : numpy.ndarray
-        Where these stand among all: first of each fiblet, ``(n,)``.
-    """
-
-    rows: Ints
-    decoding: npt.NDArray[np.uint32]
+    rows: Ints  # `(n,)` which fiblets, counted over the whole set
+    decoding: npt.NDArray[np.uint32]  # their words `(n, 3)`, and which of them begin a streamline
     begins: Mask
-    sizes: Ints
+    sizes: Ints  # their code bytes and points
     counts: Ints
-    codes: Ints
+    codes: Ints  # where these stand among all: first of each fiblet, `(n,)`
     points: Ints
 
 
@@ -211,15 +184,7 @@ def _forget(fiblets: FibletSet, fiblet: int) -> None:
 
 @dataclass
 class Records:
-    """Records of a set while it is filled.
-
-    Attributes
-    ----------
-    at : numpy.ndarray
-        Streamlines, code bytes and points so far.
-    n : int
-        Fiblets so far.
-    """
+    """Records of a set while it is filled."""
 
     anchors: npt.NDArray[np.uint32]
     anchors_low: npt.NDArray[np.uint16] | None
@@ -229,8 +194,8 @@ class Records:
     pages: Ints
     exact: npt.NDArray[Any] | None
     per_point: dict[str, npt.NDArray[Any]]
-    at: Ints
-    n: int = 0
+    at: Ints  # streamlines, code bytes and points so far
+    n: int = 0  # fiblets so far
 
     @classmethod
     def empty(cls, fiblets: FibletSet, n: int, n_codes: int, n_points: int) -> Records:

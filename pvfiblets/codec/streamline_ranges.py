@@ -22,15 +22,9 @@ Ints = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class StreamlineRanges:
-    """Ranges of some streamlines' fiblets and points among all.
+    """Ranges of some streamlines' fiblets and points among all."""
 
-    Attributes
-    ----------
-    fiblet, fiblets, point, points : numpy.ndarray
-        ``(n,)`` int64: first fiblet and number of fiblets, first point and number of points.
-    """
-
-    fiblet: Ints
+    fiblet: Ints  # `(n,)` int64: first fiblet and number of fiblets, first point and number of points
     fiblets: Ints
     point: Ints
     points: Ints

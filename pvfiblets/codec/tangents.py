@@ -18,13 +18,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-__all__ = ["LEAST_SUM", "ONE_POINT", "PIXELS", "pixel"]
+PIXELS = 2000.0  # pixels of a full-screen view along the diagonal of the bounds
 
-PIXELS = 2000.0
-"""Pixels of a full-screen view along the diagonal of the bounds."""
-
-ONE_POINT = 1e-3
-"""Pixels: points that are no farther apart are one, and no direction leads from one to the other."""
+ONE_POINT = 1e-3  # pixels: points that are no farther apart are one, and no direction leads from one to the other
 
 LEAST_SUM = 1e-3
 """Sums of two unit vectors that are shorter have no direction: the line turns by more than 179.9 degrees."""

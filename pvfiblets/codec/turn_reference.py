@@ -39,23 +39,13 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Turns:
-    """Directions of consecutive segments, and how far each may be turned.
+    """Directions of consecutive segments, and how far each may be turned."""
 
-    Attributes
-    ----------
-    units : numpy.ndarray
-        ``(n, 3)`` unit vectors, or none.
-    allowed : numpy.ndarray
-        ``(n,)`` largest distance of a unit vector that is drawn instead; infinite where any will do.
-    bends : numpy.ndarray
-        ``(n,)`` distance of each unit vector from the tangent where its segment begins, 0 where that bounds nothing.
-    first : numpy.ndarray
-        ``(n,)`` as ``allowed`` where a fiblet begins with the segment, though not the streamline; -1 where none should.
-    """
-
-    units: Array
-    allowed: Array
+    units: Array  # `(n, 3)` unit vectors, or none
+    allowed: Array  # `(n,)` largest distance of a unit vector that is drawn instead; infinite where any will do
+    # `(n,)` distance of each unit vector from the tangent where its segment begins, 0 where that bounds nothing
     bends: Array
+    # `(n,)` as `allowed` where a fiblet begins with the segment, though not the streamline; -1 where none should
     first: Array
 
     def __getitem__(self, part: slice) -> Turns:
@@ -98,11 +88,9 @@ def may_turn(line: Array, shortest: float, angle: float) -> Turns:
 
 
 def cut(turns: Turns, angle: float) -> list[int]:
-    """Return the starts of a streamline's slots, at most 60 points after each other.
-
-    A slot ends before its 60th point where the line bends there by more than the first point of a fiblet may: at the
-    next point before at which it does not, or at that of the least bend among 20.
-    """
+    """Return the starts of a streamline's slots, at most 60 points after each other."""
+    # A slot ends before its 60th point where the line bends there by more than the first point of a fiblet may: at the
+    # next point before at which it does not, or at that of the least bend among 20.
     n = len(turns.units) + 1
     enough = FIRST_SHARE * 2.0 * np.sin(0.5 * np.radians(angle))
 

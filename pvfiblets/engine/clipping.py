@@ -14,8 +14,6 @@ from .frame import Array, local_frame
 from .gl.uniform_struct import Field, UniformStruct
 from .view import MAX_CLIP_PLANES, View
 
-__all__ = ["CLIP_PLANES_BLOCK", "clip_planes_block"]
-
 CLIP_PLANES_BLOCK = UniformStruct(
     "ClipPlanes",
     Field("clip_planes", f"vec4[{MAX_CLIP_PLANES}]", "(n, d)"),

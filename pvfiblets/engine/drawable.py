@@ -53,32 +53,15 @@ AnyTarget = TypeVar("AnyTarget", bound=Target)
 class Drawable(ABC, Generic[AnyStyle]):
     """Draws one set of data on one OpenGL context.
 
-    The context must be current in every call. The renderer leaves its bindings behind, except for the
-    framebuffers; the caller keeps its own OpenGL state.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        OpenGL 3.3 or later.
-    constants : mapping
-        What the shaders' placeholders stand for.
-    lender : Drawable, optional
-        Another on the same context that lives longer, and lends its programs and targets: pictures of both go into the
-        same textures.
-
-    Attributes
-    ----------
-    pipeline : str
-        How it draws.
-    share : float
-        How much of the data is drawn: 1.0 for all.
+    The context must be current in every call. The renderer leaves its bindings behind, except for the framebuffers; the
+    caller keeps its own OpenGL state. A ``lender`` is another drawable on the same context that lives longer, and lends
+    its programs and targets: pictures of both go into the same textures.
     """
 
-    STYLE: ClassVar[type[Style]]
-    """Class of its styles."""
+    STYLE: ClassVar[type[Style]]  # class of its styles
 
-    pipeline: str
-    share = 1.0
+    pipeline: str  # how it draws
+    share = 1.0  # how much of the data is drawn: 1.0 for all
 
     def __init__(
         self, ctx: moderngl.Context, constants: Mapping[str, Any], lender: Drawable[Any] | None = None
@@ -114,29 +97,9 @@ class Drawable(ABC, Generic[AnyStyle]):
     # Drawing
 
     def render(self, view: View, style: AnyStyle | None = None, *, outside: moderngl.Texture | None = None) -> GBuffer:
-        """Draw, unless the last picture was of the same view and style.
-
-        Parameters
-        ----------
-        view : View
-        style : Style
-            Of the class ``STYLE``; may be left out where that has a default for everything.
-        outside : moderngl.Texture, optional
-            Depth of other things in the scene, r32ui keys as in the G-buffer, of the view's size. A picture that
-            read it serves this one call only: the next one draws anew.
-
-        Returns
-        -------
-        GBuffer
-            The renderer's own; the same object until the size, or what the style wants of it, changes.
-
-        Raises
-        ------
-        EngineError
-            After :meth:`release`, if the picture is too large, or if ``style.values`` names nothing.
-        TypeError
-            If the style is another drawable's.
-        """
+        """Draw, unless the last picture was of the same view and style, and return the renderer's own G-buffer."""
+        # `outside` is the depth of other things in the scene, r32ui keys as in the G-buffer, of the view's size. A
+        # picture that read it serves this one call only: the next one draws anew.
         style = self._checked(style)
         self._check_alive()
         if self._buffer is not None and self._made == (view, style) and self._serves(outside):
@@ -151,21 +114,9 @@ class Drawable(ABC, Generic[AnyStyle]):
         return self._buffer
 
     def render_in_pieces(self, view: View, style: AnyStyle | None = None) -> Iterator[None]:
-        """Draw what :meth:`render` would, which then finds it drawn, and yield after each piece of about 50 ms.
-
-        Other things may be drawn in between, and this drawable too: then the rest of it is left. Nothing is drawn, nor
-        yielded, where that cannot be done in pieces.
-
-        Parameters
-        ----------
-        view, style
-            As of :meth:`render`.
-
-        Raises
-        ------
-        EngineError, TypeError
-            As :meth:`render`.
-        """
+        """Draw what :meth:`render` would, which then finds it drawn, and yield after each piece of about 50 ms."""
+        # Other things may be drawn in between, and this drawable too: then the rest of it is left. Nothing is drawn,
+        # nor yielded, where that cannot be done in pieces.
         style = self._checked(style)
         self._check_alive()
         steps = None if self._buffer is not None and self._made == (view, style) else self._pieces(view, style)
@@ -297,19 +248,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         return sizes
 
     def explain(self, *, counts: bool = True) -> dict[str, Any]:
-        """Return the work of the last redraw, and wait for it to end.
-
-        Parameters
-        ----------
-        counts : bool
-            Whether to count what takes a pass of its own to count.
-
-        Returns
-        -------
-        dict
-            ``passes`` (name, ms); ``features``, which are on in the programs that ran; ``buffers`` (name, bytes); and
-            what the class says of its own.
-        """
+        """Return ``passes`` (name, ms), ``features`` and ``buffers`` (name, bytes) of the finished last redraw."""
         return {
             "passes": self._passes.report(),
             "features": sorted(self._features),

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from ..errors import FibletsError
 
-__all__ = ["EngineError", "GPUMemoryError"]
-
 
 class EngineError(FibletsError, RuntimeError):
     """OpenGL cannot do what a scene needs: version, memory, a limit, or a shader that does not compile."""

@@ -19,8 +19,7 @@ from .view import Style, View
 
 __all__ = ["FRAME_BLOCK", "frame_block", "local_frame", "reference_anchor", "segment_pixels"]
 
-FAR_SIZE = 4.0
-"""Pixels up to which a fiblet is drawn as one segment (paper: Schertzer et al. 2022, section 3.4.4)."""
+FAR_SIZE = 4.0  # pixels up to which a fiblet is drawn as one segment (paper: Schertzer et al. 2022, section 3.4.4).
 
 FRAME_BLOCK = UniformStruct(
     "Frame",
@@ -40,15 +39,12 @@ FRAME_BLOCK = UniformStruct(
 Array = npt.NDArray[np.float64]
 
 EPSILON = float(np.finfo(np.float32).eps)
-CORNERS = np.array(list(np.ndindex(2, 2, 2)))
-"""Corners of a box from 0 to 1."""
+CORNERS = np.array(list(np.ndindex(2, 2, 2)))  # corners of a box from 0 to 1
 
 
 def reference_anchor(matrix: Array, origin: Array, scale: Array, top: int) -> npt.NDArray[np.int64]:
-    """Choose the anchor position that rounding is made relative to.
-
-    The nearest point in front of the camera, along its middle ray, inside the box of all anchors.
-    """
+    """Choose the anchor position that rounding is made relative to."""
+    # The nearest point in front of the camera, along its middle ray, inside the box of all anchors.
     middle = np.full(3, top // 2, np.int64)
     try:
         ends = np.linalg.solve(matrix, np.array([[0.0, 0.0], [0.0, 0.0], [-1.0, 1.0], [1.0, 1.0]]))
@@ -93,10 +89,8 @@ def _local_frame(matrix: bytes, origin_: bytes, scale_: bytes, top: int) -> Loca
 
 
 def segment_pixels(view: View, origin: Array, scale: Array, top: int, length: float) -> float:
-    """Estimate how many pixels a segment of some length (mm) takes where the anchors come nearest to the camera.
-
-    At least 4, and at most 100: of longer ones few are in the picture at a time.
-    """
+    """Estimate how many pixels a segment of some length (mm) takes where the anchors come nearest to the camera."""
+    # At least 4, and at most 100: of longer ones few are in the picture at a time.
     reference, _, (x, y, _, w) = local_frame(view, origin, scale, top)
     corners = (CORNERS * top - reference) * scale
     nearest = float((corners @ w[:3] + w[3]).min())

@@ -35,40 +35,15 @@ __all__ = ["EMPTY", "GBuffer"]
 
 EMPTY = 0xFFFFFFFF
 
-RELIEF = {"across": "f2", "ink": "f2", "normal": "u4"}
-"""Type of the texture ``across`` by its contents."""
+RELIEF = {"across": "f2", "ink": "f2", "normal": "u4"}  # type of the texture `across` by its contents
 
 
 class GBuffer:
-    """Textures of one viewport's size.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Current context.
-    size : tuple of int
-        Width and height in pixels.
-
-    Raises
-    ------
-    EngineError
-        If a side is longer than the driver's largest texture, or memory does not suffice.
-
-    Attributes
-    ----------
-    size : tuple of int
-    depth, ids, position : moderngl.Texture
-    owner : moderngl.Texture
-        r32ui, the engine's own: index of the fiblet that each pixel belongs to; of volumes, of the voxel.
-    across, edges, colours : moderngl.Texture or None
-        See :meth:`want_relief`, :meth:`want_edges` and :meth:`want_colours`.
-    generation : int
-        Counts redraws; a reader that saw this number has seen this picture.
-    """
+    """Textures of one viewport's size."""
 
     def __init__(self, ctx: moderngl.Context, size: tuple[int, int]) -> None:
-        self.size = size
-        self.generation = 0
+        self.size = size  # width and height in pixels
+        self.generation = 0  # counts redraws; a reader that saw this number has seen this picture
         limit = int(ctx.info["GL_MAX_TEXTURE_SIZE"])
         if max(size) > limit:
             raise EngineError(
@@ -77,10 +52,11 @@ class GBuffer:
             )
         self._textures: list[moderngl.Texture] = []
         self.depth = self._texture(ctx, 1, "u4")
+        # r32ui, the engine's own: index of the fiblet that each pixel belongs to; of volumes, of the voxel
         self.owner = self._texture(ctx, 1, "u4")
         self.ids = self._texture(ctx, 2, "u4")
         self.position = self._texture(ctx, 2, "f4")
-        self.across: moderngl.Texture | None = None
+        self.across: moderngl.Texture | None = None  # see `want_relief`, `want_edges` and `want_colours`
         self.edges: moderngl.Texture | None = None
         self.colours: moderngl.Texture | None = None
         self._relief: str | None = None
@@ -96,13 +72,7 @@ class GBuffer:
         return texture
 
     def want_relief(self, ctx: moderngl.Context, relief: str | None) -> None:
-        """Make the texture ``across``: ``'across'`` of wide lines, ``'normal'`` of tubes, ``'ink'``, or None for none.
-
-        Raises
-        ------
-        EngineError
-            If memory does not suffice; then everything is given back.
-        """
+        """Make the texture ``across``: ``'across'`` of lines, ``'normal'`` of tubes, ``'ink'``, or None for none."""
         if relief == self._relief:
             return
         if self.across is not None:
@@ -112,13 +82,7 @@ class GBuffer:
         self._relief = relief
 
     def want_edges(self, ctx: moderngl.Context, wanted: bool) -> None:
-        """Make or drop the texture ``edges``.
-
-        Raises
-        ------
-        EngineError
-            If memory does not suffice; then everything is given back.
-        """
+        """Make or drop the texture ``edges``."""
         if wanted and self.edges is None:
             self.edges = self._texture(ctx, 1, "u4")
         elif not wanted and self.edges is not None:
@@ -127,13 +91,7 @@ class GBuffer:
             self.edges = None
 
     def want_colours(self, ctx: moderngl.Context) -> None:
-        """Make the texture ``colours``.
-
-        Raises
-        ------
-        EngineError
-            If memory does not suffice; then everything is given back.
-        """
+        """Make the texture ``colours``."""
         if self.colours is None:
             self.colours = self._texture(ctx, 4, "f1")
 

@@ -24,51 +24,22 @@ from .gl.shaders import Programs
 if TYPE_CHECKING:
     from .regions.region_cut import RegionCut
 
-__all__ = ["HitDrawable", "HitTarget"]
-
-
 
 class HitTarget:
     """Textures of one picture.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    size : tuple of int
-        Pixels.
-    coloured : bool
-        Whether the G-buffer has colours.
-    relief : str
-        What its ``across`` holds.
-    edges : {None, 'hits', 'attributes'}
-        Whether it has ``edges``, and which pass writes them.
-
-    Attributes
-    ----------
-    size : tuple of int
-    coloured : bool
-    buffer : GBuffer
-    hits, depths : moderngl.Texture
-        Two words that the first pass says of each pixel, undefined where nothing is; depths are 1 at the near plane and
-        0 at the far one and where nothing is.
-    hits_buffer, attributes, keys : moderngl.Framebuffer
-        For the two passes, and for the depth alone.
-
-    Raises
-    ------
-    EngineError
-        If a side is longer than the driver's largest texture, or memory does not suffice.
+    ``hits`` and ``depths`` are two words of each pixel from the first pass, undefined where nothing is; depths are 1 at
+    the near plane and 0 at the far one and where nothing is.
     """
 
     def __init__(
         self,
         ctx: moderngl.Context,
         gl: GLExtras,
-        size: tuple[int, int],
-        coloured: bool,
-        relief: str = "normal",
-        edges: str | None = None,
+        size: tuple[int, int],  # pixels
+        coloured: bool,  # whether the G-buffer has colours
+        relief: str = "normal",  # what its `across` holds
+        edges: str | None = None,  # whether it has `edges`, and which pass writes them
     ) -> None:
         self.size, self.coloured = size, coloured
         self._ctx, self._gl = ctx, gl
@@ -130,17 +101,13 @@ class HitTarget:
 class HitDrawable(Drawable[AnyStyle]):
     """A `Drawable` that finds hits and their depths first, and all else in one pass over the picture."""
 
-    CULLING: ClassVar[tuple[str | None, ...]] = ("two-phase", None)
-    """Methods of occlusion culling."""
+    CULLING: ClassVar[tuple[str | None, ...]] = ("two-phase", None)  # methods of occlusion culling
 
-    RELIEF: ClassVar[str] = "normal"
-    """Contents of ``GBuffer.across``."""
+    RELIEF: ClassVar[str] = "normal"  # contents of `GBuffer.across`
 
-    EDGES: ClassVar[str] = "attributes"
-    """Pass that writes ``GBuffer.edges``, if requested: ``'hits'`` or ``'attributes'``."""
+    EDGES: ClassVar[str] = "attributes"  # pass that writes `GBuffer.edges`, if requested: `'hits'` or `'attributes'`
 
-    SAMPLERS: ClassVar[Mapping[str, int]]
-    """Texture units of the data, by the names of their samplers."""
+    SAMPLERS: ClassVar[Mapping[str, int]]  # texture units of the data, by the names of their samplers
 
     _listing: Listing | None = None
     _listed = False  # whether the last picture was drawn from lists

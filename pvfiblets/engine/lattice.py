@@ -15,10 +15,7 @@ import numpy.typing as npt
 from ..invalid_points import warn_of_far
 from .errors import EngineError
 
-__all__ = ["TOP", "lattice", "places"]
-
-TOP = 2**31 - 1
-"""The largest integer of a place."""
+TOP = 2**31 - 1  # the largest integer of a place
 
 _LARGEST = float(np.finfo(np.float32).max)
 _BLOCK = 1 << 20  # points at a time: float64 of all would take more memory than the places

@@ -16,39 +16,25 @@ if TYPE_CHECKING:
 
 __all__ = ["PIECE", "Pieces", "finish"]
 
-PIECE = 0.05
-"""Seconds of a piece, about: as long as an event waits that comes while one is drawn."""
+PIECE = 0.05  # seconds of a piece, about: as long as an event waits that comes while one is drawn
 
-FIRST = 8
-"""Work groups of a stage whose time is not known yet: some 2,000 fiblets."""
+FIRST = 8  # work groups of a stage whose time is not known yet: some 2,000 fiblets
 
-GROWTH = 4
-"""Greatest ratio of groups tried at once to the most so far."""
+GROWTH = 4  # greatest ratio of groups tried at once to the most so far
 
 Found = TypeVar("Found")
 
 
 class Pieces:
-    """Ends of one picture's pieces, by the times of earlier ones.
-
-    Parameters
-    ----------
-    passes : Passes
-        Whose clock stands while others draw.
-    again : callable
-        Binds what drawing programs need, as others may have bound something else.
-    known : dict
-        Seconds of a work group and the most groups so far, by stage: learnt here, and kept from picture to picture.
-    seconds : float
-        Of a piece.
-    """
+    """Ends of one picture's pieces, by the times of earlier ones."""
 
     def __init__(
         self,
-        passes: Passes,
-        again: Callable[[], Any],
+        passes: Passes,  # whose clock stands while others draw
+        again: Callable[[], Any],  # binds what drawing programs need, as others may have bound something else
+        # seconds of a work group and the most groups so far, by stage: learnt here, and kept from picture to picture
         known: dict[str, tuple[float, int]],
-        seconds: float = PIECE,
+        seconds: float = PIECE,  # of a piece
     ) -> None:
         self._passes = passes
         self._again = again

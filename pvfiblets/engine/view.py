@@ -14,45 +14,26 @@ if TYPE_CHECKING:
     from ..query.regions.shapes import Region
     from .fiblets.data.sampled_volume import VolumeSource
 
-__all__ = ["MAX_CLIP_PLANES", "Style", "View", "check_at_least"]
-
-MAX_CLIP_PLANES = 8
-"""As many as OpenGL itself promises (GL_MAX_CLIP_DISTANCES); a box takes six."""
+MAX_CLIP_PLANES = 8  # as many as OpenGL itself promises (GL_MAX_CLIP_DISTANCES); a box takes six
 
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A picture's size and camera.
+    """A picture's size and camera."""
 
-    Parameters
-    ----------
-    size : tuple of int
-        Width and height in pixels, each at least 1.
-    model_view_projection : array_like
-        ``(4, 4)`` float64: data coordinates in mm (column vectors) to OpenGL clip coordinates. Perspective or
-        parallel; any actor placement belongs in it.
-    clip_planes : array_like, optional
-        ``(k, 4)`` float64 planes (a, b, c, d) in data coordinates, k <= 8: fiblets remain only where
-        ax + by + cz + d >= 0 for all of them, and a cut reveals the fiblets behind it. They need not be
-        normalised. None, or planes that nothing touches, cost nothing.
-    region : Region, optional
-        Region that clips the fiblets (:mod:`pvfiblets.regions`), data coordinates. None costs nothing.
-    waits : bool
-        Whether drawing may wait until the GPU has said in how many layers a region's closed surfaces lie there. If not,
-        the number of earlier pictures is used: where a ray meets more, the picture lacks the farthest until the
-        number has come back, two or three pictures later.
-
-    Raises
-    ------
-    ValueError
-        If the size is not positive, the matrix is not 4 x 4 and finite, or the planes are not finite, not four numbers
-        each or too many.
-    """
-
-    size: tuple[int, int]
+    size: tuple[int, int]  # width and height in pixels, each at least 1
+    # `(4, 4)` float64: data coordinates in mm (column vectors) to OpenGL clip coordinates. Perspective or parallel; any
+    # actor placement belongs in it.
     model_view_projection: npt.NDArray[np.float64]
+    # `(k, 4)` float64 planes (a, b, c, d) in data coordinates, k <= 8: fiblets remain only where ax + by + cz + d >= 0
+    # for all of them, and a cut reveals the fiblets behind it. They need not be normalised. None, or planes that
+    # nothing touches, cost nothing.
     clip_planes: Sequence[Sequence[float]] | npt.NDArray[np.float64] = ()
+    # region that clips the fiblets (`pvfiblets.regions`), data coordinates. None costs nothing.
     region: Region | None = None
+    # whether drawing may wait until the GPU has said in how many layers a region's closed surfaces lie there. If not,
+    # the number of earlier pictures is used: where a ray meets more, the picture lacks the farthest until the number
+    # has come back, two or three pictures later.
     waits: bool = True
     _key: tuple[object, ...] = field(init=False, repr=False)
 
@@ -86,22 +67,15 @@ class View:
 
 @dataclass(frozen=True)
 class Style:
-    """The style of a drawable: the fields that all drawables share.
+    """The style of a drawable: the fields that all drawables share."""
 
-    Parameters
-    ----------
-    values : str or VolumeSource, optional
-        Name of the drawable's value to write for each pixel. None costs nothing.
-    exact : bool
-        Whether pixels show only lines that cover their middles. Otherwise lines thinner than a pixel are widened to
-        one, or many of their pixels would be missed; the mean of many pictures, of other middles each, misses none.
-    edges : bool
-        Whether to write where the edges run of what each pixel shows (``GBuffer.edges``), for smoothing them. Volumes
-        have none.
-    """
-
+    # name of the drawable's value to write for each pixel. None costs nothing.
     values: str | VolumeSource | None = field(default=None, kw_only=True)
+    # whether pixels show only lines that cover their middles. Otherwise lines thinner than a pixel are widened to one,
+    # or many of their pixels would be missed; the mean of many pictures, of other middles each, misses none.
     exact: bool = field(default=False, kw_only=True)
+    # whether to write where the edges run of what each pixel shows (`GBuffer.edges`), for smoothing them. Volumes have
+    # none.
     edges: bool = field(default=False, kw_only=True)
 
     @property

@@ -46,12 +46,10 @@ __all__ = [
     "write",
 ]
 
-DOUBLES = (".tck", ".vtk")
-"""Suffixes of formats with float32 points unless doubles are requested."""
+DOUBLES = (".tck", ".vtk")  # suffixes of formats with float32 points unless doubles are requested
 
 
-SPACED = (".vtk", ".vtp", ".fib", *registry.READ_BY_VTK)
-"""Suffixes of formats that do not fix the space of points."""
+SPACED = (".vtk", ".vtp", ".fib", *registry.READ_BY_VTK)  # suffixes of formats that do not fix the space of points
 
 
 def read(path: str | PathLike[str], *, progress: bool = False, space: str | None = None) -> Streamlines:

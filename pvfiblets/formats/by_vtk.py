@@ -8,29 +8,16 @@ parsers of our own. Names of blocks become groups. Coordinates are RAS+ mm, or L
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from pvfiblets.errors import FormatError
-from pvfiblets.formats.read_whole import facts, only_finite, pieces
+from pvfiblets.formats.read_whole import only_finite, whole_file
 from pvfiblets.formats.vtk_sizes import check_memory
 from pvfiblets.formats.vtk_xml import XmlFile
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.vtk_space import FIELD, OURS, Space, space_of_dataset, space_taken
-
-__all__ = ["info", "iter_chunks", "read", "read_dataset"]
-
-
-def read(
-    path: str | PathLike[str],
-    *,
-    progress: bool = False,  # noqa: ARG001
-    space: Space | None = None,
-) -> Streamlines:
-    """Read a file through VTK (see :func:`pvfiblets.formats.read`)."""
-    return _read(path, space)[0]
 
 
 def read_dataset(path: str | PathLike[str]) -> Any:
@@ -68,12 +55,4 @@ def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, 
     return only_finite(found), {"space": space, "space_from": why}
 
 
-def iter_chunks(path: str | PathLike[str], max_points: int, *, space: Space | None = None) -> Iterator[Streamlines]:
-    """Read the whole file, then give it in pieces (see :func:`pvfiblets.formats.iter_chunks`)."""
-    yield from pieces(read(path, space=space), max_points)
-
-
-def info(path: str | PathLike[str], *, space: Space | None = None) -> dict[str, Any]:
-    """Facts of the file, which is read whole (see :func:`pvfiblets.formats.info`)."""
-    streamlines, of_space = _read(path, space)
-    return {**facts(streamlines), **of_space}
+read, iter_chunks, info = whole_file(_read)

@@ -17,8 +17,6 @@ from pvfiblets.formats.mapped import MappedFile
 from pvfiblets.formats.read_whole import facts, only_finite, pieces
 from pvfiblets.streamlines import Streamlines
 
-__all__ = ["info", "iter_chunks", "read"]
-
 _MAGIC = b"\x89HDF\r\n\x1a\n"
 
 

@@ -13,12 +13,9 @@ from zipfile import BadZipFile, ZipFile
 from pvfiblets.errors import FibletsError, FormatError
 from pvfiblets.support.memory import check_room, shown
 
-DENSEST = 1032
-"""Most bytes of output per byte of deflate's."""
-SMALL = 64 << 20
-"""Bytes that are always allowed."""
-ODD = 100
-"""Largest plausible ratio of inflation; larger ones are crafted."""
+DENSEST = 1032  # most bytes of output per byte of deflate's
+SMALL = 64 << 20  # bytes that are always allowed
+ODD = 100  # largest plausible ratio of inflation; larger ones are crafted
 
 
 def inflate(path: str, stream: gzip.GzipFile, n: int) -> bytes:
@@ -30,10 +27,8 @@ def inflate(path: str, stream: gzip.GzipFile, n: int) -> bytes:
 
 
 def stated_size(path: str | PathLike[str]) -> int:
-    """Return how many bytes a file says that it inflates to; it may lie, and counts only to 4 GB.
-
-    What cannot be true is 0.
-    """
+    """Return how many bytes a file says that it inflates to; it may lie, and counts only to 4 GB."""
+    # What cannot be true is 0.
     place = Path(path)
     size = place.stat().st_size
     if size < 18:  # of the smallest gzip file

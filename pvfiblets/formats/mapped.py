@@ -20,18 +20,7 @@ from pvfiblets.errors import FormatError
 
 
 class MappedFile:
-    """A file's bytes, read-only, through the operating system's page cache.
-
-    Parameters
-    ----------
-    path : str or PathLike
-
-    Attributes
-    ----------
-    path : str
-    size : int
-        Bytes.
-    """
+    """A file's bytes, read-only, through the operating system's page cache."""
 
     def __init__(self, path: str | PathLike[str]) -> None:
         self.path = fspath(path)
@@ -54,10 +43,8 @@ class MappedFile:
         return bytes(self.buffer[position : position + count])
 
     def forget(self, position: int, n_bytes: int) -> None:
-        """Release the memory behind bytes that will hardly be read again; they stay readable.
-
-        Without this a file streamed piece by piece ends up resident as a whole, however small the pieces.
-        """
+        """Release the memory behind bytes that will hardly be read again; they stay readable."""
+        # Without this a file streamed piece by piece ends up resident as a whole, however small the pieces.
         if not isinstance(self.buffer, bytes):
             drop_pages(self.buffer, position, n_bytes)
 
@@ -76,13 +63,11 @@ class MappedFile:
 
 
 def forget(array: NDArray[Any], first: int, last: int) -> None:
-    """Release the memory behind rows of a mapped array, or of a view of one; they stay readable.
-
-    Without this a file that is streamed through its map ends up resident as a whole. Arrays in memory are left alone,
-    and so are private maps (mode ``'c'``), whose changes are nowhere else, and maps not of NumPy's that can be written
-    to, for they do not tell whether they are private. Give 0 for `first` where rows are read in
-    order: reading a block brings back pages of the one before, and releasing pages twice costs nothing.
-    """
+    """Release the memory behind rows of a mapped array, or of a view of one; they stay readable."""
+    # Without this a file that is streamed through its map ends up resident as a whole. Arrays in memory are left alone,
+    # and so are private maps (mode `'c'`), whose changes are nowhere else, and maps not of NumPy's that can be written
+    # to, for they do not tell whether they are private. Give 0 for `first` where rows are read in order: reading a
+    # block brings back pages of the one before, and releasing pages twice costs nothing.
     owner: Any = array
     found: Any = None
     mapped: mmap.mmap | None = None

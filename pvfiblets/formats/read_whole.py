@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from os import PathLike
 from typing import Any
 
 from pvfiblets.formats.rows import finite
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.support.vtk_space import Space
 
-TEXT_ARRAYS = "text arrays"
-"""The reason under which `dropped` counts arrays of strings."""
+TEXT_ARRAYS = "text arrays"  # the reason under which `dropped` counts arrays of strings
 
 
 def only_finite(streamlines: Streamlines, more: dict[str, int] | None = None) -> Streamlines:
@@ -35,6 +36,22 @@ def pieces(streamlines: Streamlines, max_points: int) -> Iterator[Streamlines]:
         if start:
             piece.dropped = {}
         yield piece
+
+
+def whole_file(read_with_facts: Callable[..., tuple[Streamlines, dict[str, str]]]) -> tuple[Any, Any, Any]:
+    """Return ``read``, ``iter_chunks`` and ``info`` of a format, from a function of path and space."""
+
+    def read(path: str | PathLike[str], *, progress: bool = False, space: Space | None = None) -> Streamlines:  # noqa: ARG001
+        return read_with_facts(path, space)[0]
+
+    def iter_chunks(path: str | PathLike[str], max_points: int, *, space: Space | None = None) -> Iterator[Streamlines]:
+        return pieces(read(path, space=space), max_points)
+
+    def info(path: str | PathLike[str], *, space: Space | None = None) -> dict[str, Any]:
+        streamlines, of_space = read_with_facts(path, space)
+        return {**facts(streamlines), **of_space}
+
+    return read, iter_chunks, info
 
 
 def facts(streamlines: Streamlines) -> dict[str, Any]:

@@ -8,8 +8,6 @@ from os import PathLike
 from pathlib import Path
 from zipfile import BadZipFile, ZipFile
 
-__all__ = ["suffix_by_content"]
-
 _BEGINNINGS = {
     b"mrtrix tracks": ".tck",
     b"TRACK": ".trk",

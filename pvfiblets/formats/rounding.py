@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from pvfiblets.formats.mapped import forget
 
-__all__ = ["largest_change", "warn_of_changes"]
-
 _BLOCK = 1 << 20  # rows looked at together
 _POINTS = 1e-3  # mm
 _VALUES = 1e-5  # of an array's range

@@ -25,13 +25,11 @@ from pvfiblets.streamlines import Streamlines, offsets_from_counts
 Array = NDArray[Any]
 Ints = NDArray[np.int64]
 
-BLOCK_BYTES = 3 << 19
-"""Bytes per block: measured best between 0.2 and 12 MB for a 180 MB file on two cores."""
+BLOCK_BYTES = 3 << 19  # bytes per block: measured best between 0.2 and 12 MB for a 180 MB file on two cores
 
 _THREADS = min(os.cpu_count() or 1, 8)
 
-_TOLD_ROUNDING = 1e-3
-"""Error of float32 (mm) from which writers warn."""
+_TOLD_ROUNDING = 1e-3  # error of float32 (mm) from which writers warn
 
 
 def nonfinite(values: Array) -> Ints:
@@ -170,11 +168,9 @@ def finite(
     dropped: dict[str, int],
     **rest: Any,
 ) -> Streamlines:
-    """Streamlines of the points whose three coordinates are finite.
-
-    The others are left out with their data, lines are cut there, and ``dropped`` counts both; a
-    streamline that has none left stays as a streamline without points.
-    """
+    """Streamlines of the points whose three coordinates are finite."""
+    # The others are left out with their data, lines are cut there, and `dropped` counts both; a streamline that has
+    # none left stays as a streamline without points.
     streamlines = Streamlines(points, offsets_from_counts(counts), per_point, dropped=dropped, **rest)
     values = points if points.flags.c_contiguous else np.ascontiguousarray(points)
     bad = nonfinite(values.reshape(-1))

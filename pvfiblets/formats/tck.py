@@ -50,14 +50,11 @@ Array = NDArray[Any]
 Ints = NDArray[np.int64]
 
 MAGIC_TRACKS = "mrtrix tracks"
-_HEADER_LIMIT = 1 << 24
-"""No header is longer; the search for its END stops here (16 MiB of command history)."""
+_HEADER_LIMIT = 1 << 24  # no header is longer; the search for its END stops here (16 MiB of command history)
 
-_BLOCK_POINTS = 1 << 20
-"""Points written at a time."""
+_BLOCK_POINTS = 1 << 20  # points written at a time
 
-HOLDS: tuple[str, ...] = ()
-"""Parts of Streamlines besides the points that the format can carry."""
+HOLDS: tuple[str, ...] = ()  # parts of Streamlines besides the points that the format can carry
 
 _DATATYPES = {
     "Float32": "<f4",
@@ -67,15 +64,12 @@ _DATATYPES = {
     "Float64LE": "<f8",
     "Float64BE": ">f8",
 }
-_OF_THE_FILE = ("datatype", "count", "file")
-"""Keys that each writer sets anew."""
+_OF_THE_FILE = ("datatype", "count", "file")  # keys that each writer sets anew
 
-HEADER, ROWS = "tck_header", "tck_rows"
-"""Keys of ``Streamlines.space``."""
+HEADER, ROWS = "tck_header", "tck_rows"  # keys of `Streamlines.space`
 
 _FINGERPRINT_ROWS = 64
-_SAME_STEP = 1e-3
-"""Relative difference below which ``step_size`` stays as it is written."""
+_SAME_STEP = 1e-3  # relative difference below which `step_size` stays as it is written
 
 NO_END_MARKER = "end marker missing"
 AFTER_END = "bytes after the end marker"
@@ -86,8 +80,7 @@ MORE = "streamlines beyond the header's count (kept)"
 class Header(NamedTuple):
     """Contents of the text header (shared with ``.tsf``, which has the same layout)."""
 
-    fields: dict[str, str]
-    """Values by key in lower case; repeated keys have a line each."""
+    fields: dict[str, str]  # values by key in lower case; repeated keys have a line each
     dtype: np.dtype[Any]
     data_position: int
     n_streamlines: int | None
@@ -158,17 +151,12 @@ class Window(NamedTuple):
 
     rows: Array
     counts: Ints
-    used: int
-    """Rows consumed: up to and with the last delimiter, or the end marker."""
+    used: int  # rows consumed: up to and with the last delimiter, or the end marker
     ended: bool
-    tail: int
-    """Points after the last delimiter."""
-    first_end: int
-    """Rows up to and with the first delimiter; 0 where there is none."""
-    dropped: int
-    """Points left out."""
-    cuts: int
-    """Streamlines added where lines are cut at these points."""
+    tail: int  # points after the last delimiter
+    first_end: int  # rows up to and with the first delimiter; 0 where there is none
+    dropped: int  # points left out
+    cuts: int  # streamlines added where lines are cut at these points
 
 
 def parse_rows(rows: Array, dtype: np.dtype[Any], last: bool) -> Window:
@@ -334,11 +322,9 @@ def timestamp_in(space: Mapping[str, Any]) -> str | None:
 
 
 def timestamp_of(streamlines: Streamlines) -> str:
-    """Return the timestamp of a ``.tck`` file of these streamlines.
-
-    MRtrix compares it as text, to tell which ``.tsf`` files belong to which tracks. New ones are made from the points,
-    not from the time, so that the same points give the same file.
-    """
+    """Return the timestamp of a ``.tck`` file of these streamlines."""
+    # MRtrix compares it as text, to tell which `.tsf` files belong to which tracks. New ones are made from the points,
+    # not from the time, so that the same points give the same file.
     now = _rows_of(streamlines)
     kept = timestamp_in(streamlines.space) if streamlines.space.get(ROWS) == now else None
     return kept or f"0.{zlib.crc32(now.encode()):010d}"

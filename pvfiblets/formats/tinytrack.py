@@ -36,12 +36,10 @@ Array = NDArray[Any]
 
 UNKNOWN = "matrices of unknown meaning"
 
-_TYPES = ("f8", "f4", "i4", "i2", "u2", "u1")
-"""MATLAB 4's types by the tens digit of a matrix' type number."""
+_TYPES = ("f8", "f4", "i4", "i2", "u2", "u1")  # MATLAB 4's types by the tens digit of a matrix' type number
 
 _SUBVOXEL = 32
-_HEAD = 16
-"""Bytes of a record before its differences."""
+_HEAD = 16  # bytes of a record before its differences
 
 
 class _Matrix(NamedTuple):

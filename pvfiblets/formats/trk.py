@@ -53,13 +53,11 @@ __all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]
 Array = NDArray[Any]
 Ints = NDArray[np.int64]
 
-HOLDS = ("per_point", "per_streamline")
-"""Parts of Streamlines besides the points that the format can carry."""
+HOLDS = ("per_point", "per_streamline")  # parts of Streamlines besides the points that the format can carry
 
 AFTER_LAST = "bytes after the last streamline"
 
-_READ_BYTES = 1 << 20
-"""Compressed files are inflated by this much at a time."""
+_READ_BYTES = 1 << 20  # compressed files are inflated by this much at a time
 
 
 class _Words(Protocol):
@@ -168,11 +166,9 @@ class _Batch(NamedTuple):
 
 
 def _walk(words: Array, header: Header, max_points: int, max_records: int) -> _Batch:
-    """Hop from record to record through complete records; stop before the first that is not.
-
-    Each record says where the next begins, so this is sequential by nature: one integer is read
-    per streamline. A negative count stops the walk too.
-    """
+    """Hop from record to record through complete records; stop before the first that is not."""
+    # Each record says where the next begins, so this is sequential by nature: one integer is read per streamline. A
+    # negative count stops the walk too.
     ints = np.ascontiguousarray(words, np.int32).data
     k, p, n_words = header.row_words, header.n_properties, len(ints)
     starts = array("q")

@@ -11,25 +11,20 @@ from numpy.typing import NDArray
 from pvfiblets.errors import FormatError
 
 HEADER_SIZE = 1000
-_SCALAR_NAMES, _PROPERTY_NAMES = 38, 240
-"""Bytes at which the two tables of ten names begin."""
+_SCALAR_NAMES, _PROPERTY_NAMES = 38, 240  # bytes at which the two tables of ten names begin
 
 
 class Header(NamedTuple):
     """Contents of a trk header."""
 
-    order: str
-    """Byte order, ``"<"`` or ``">"``."""
-    n_streamlines: int
-    """Streamlines; 0 where not recorded."""
+    order: str  # byte order, `"<"` or `">"`
+    n_streamlines: int  # streamlines; 0 where not recorded
     n_scalars: int
     n_properties: int
-    scalars: dict[str, slice]
-    """Name to columns among the scalars' rows, x, y, z included."""
+    scalars: dict[str, slice]  # name to columns among the scalars' rows, x, y, z included
     properties: dict[str, slice]
     affine: NDArray[np.float64]
-    to_ras: NDArray[np.float64]
-    """(4, 4): coordinates of the file to RAS+ mm."""
+    to_ras: NDArray[np.float64]  # (4, 4): coordinates of the file to RAS+ mm
     space: dict[str, Any]
 
     @property
@@ -157,13 +152,10 @@ def _sizes_of(
 def trackvis_to_ras(
     sizes: NDArray[Any], dimensions: NDArray[Any], voxel_order: str, affine: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """(4, 4) float64 matrix from the file's coordinates to RAS+ mm.
-
-    From millimetres to voxels; by half a voxel, since the file counts from a voxel's corner; then
-    axes permuted and flipped from the header's voxel order to the affine's; then the affine. This
-    is what nibabel computes, without its rounding of the result to float32, which for images far
-    from the origin is coarser than the coordinates.
-    """
+    """(4, 4) float64 matrix from the file's coordinates to RAS+ mm."""
+    # From millimetres to voxels; by half a voxel, since the file counts from a voxel's corner; then axes permuted and
+    # flipped from the header's voxel order to the affine's; then the affine. This is what nibabel computes, without its
+    # rounding of the result to float32, which for images far from the origin is coarser than the coordinates.
     from nibabel import orientations as orient
 
     to_voxel = np.diag([*(1.0 / sizes), 1.0])

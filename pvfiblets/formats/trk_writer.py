@@ -23,12 +23,9 @@ _BLOCK_POINTS = 1 << 20
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
-    """Write a trk file, version 2, little-endian (see :func:`pvfiblets.formats.write`).
-
-    The format holds float32 only. ``affine`` and ``space`` give the geometry; what `space` lacks
-    follows from the affine. An affine that was not recorded where the streamlines come from is not
-    recorded here either.
-    """
+    """Write a trk file, version 2, little-endian (see :func:`pvfiblets.formats.write`)."""
+    # The format holds float32 only. `affine` and `space` give the geometry; what `space` lacks follows from the affine.
+    # An affine that was not recorded where the streamlines come from is not recorded here either.
     header, from_ras = _header(streamlines)
     points = _columns(streamlines.per_point, "per_point")
     values = _columns(streamlines.per_streamline, "per_streamline")

@@ -294,10 +294,8 @@ def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  
 
 
 def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
-    """Stream a trx file (see :func:`pvfiblets.formats.iter_chunks`).
-
-    In memory besides a piece: the offsets, the groups and the groups' data.
-    """
+    """Stream a trx file (see :func:`pvfiblets.formats.iter_chunks`)."""
+    # In memory besides a piece: the offsets, the groups and the groups' data.
     with _opened(path) as trx:
         yield from trx.chunks(max_points)
 

@@ -16,34 +16,21 @@ file: nothing in it tells that more was meant.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from os import PathLike
-from typing import Any
 
 import numpy as np
 
 from pvfiblets.errors import FormatError
-from pvfiblets.formats.read_whole import facts, only_finite, pieces
+from pvfiblets.formats.read_whole import only_finite, whole_file
 from pvfiblets.formats.rows import check_rounding
 from pvfiblets.formats.vtk_parser import LegacyParser
 from pvfiblets.formats.vtk_writer import write_with
-from pvfiblets.streamlines import Streamlines, from_cells
+from pvfiblets.line_cells import parts_of_cells
+from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.vtk_space import OURS, Space, space_in_header, space_named, space_taken
-
-__all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]
 
 HOLDS = ("per_point", "per_streamline", "groups", "per_group")
 """Parts of Streamlines besides the points that the format can carry (groups as field data)."""
-
-
-def read(
-    path: str | PathLike[str],
-    *,
-    progress: bool = False,  # noqa: ARG001
-    space: Space | None = None,
-) -> Streamlines:
-    """Read a legacy vtk file (see :func:`pvfiblets.formats.read`)."""
-    return _read(path, space)[0]
 
 
 def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, dict[str, str]]:
@@ -56,7 +43,7 @@ def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, 
     n = len(offsets) - 1
     first = parser.cells_before_lines
     try:
-        streamlines = from_cells(
+        parts = parts_of_cells(
             parser.points,
             offsets,
             ids,
@@ -66,28 +53,19 @@ def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, 
             field=parser.field,
             space_name=space,
         )
+        streamlines = Streamlines(**parts)
     except ValueError as error:  # groups in the field data that name no streamlines
         raise FormatError(parser.path, None, str(error), "data that agree with each other") from error
     return only_finite(streamlines, parser.notes), {"space": space, "space_from": why}
 
 
-def iter_chunks(path: str | PathLike[str], max_points: int, *, space: Space | None = None) -> Iterator[Streamlines]:
-    """Read the whole file, then give it in pieces (see :func:`pvfiblets.formats.iter_chunks`)."""
-    yield from pieces(read(path, space=space), max_points)
-
-
-def info(path: str | PathLike[str], *, space: Space | None = None) -> dict[str, Any]:
-    """Facts of the file, which is read whole (see :func:`pvfiblets.formats.info`)."""
-    streamlines, of_space = _read(path, space)
-    return {**facts(streamlines), **of_space}
+read, iter_chunks, info = whole_file(_read)
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool = False) -> None:
-    """Write a binary legacy vtk file (see :func:`pvfiblets.formats.write`).
-
-    Version 4.2, which programs other than VTK read too; 5.1 where the indices need 64 bits. MRtrix's tckconvert takes
-    double coordinates for floats, so they are float32 unless `double`.
-    """
+    """Write a binary legacy vtk file (see :func:`pvfiblets.formats.write`)."""
+    # Version 4.2, which programs other than VTK read too; 5.1 where the indices need 64 bits. MRtrix's tckconvert takes
+    # double coordinates for floats, so they are float32 unless `double`.
     from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 
     writer = vtkPolyDataWriter()

@@ -39,8 +39,7 @@ _TYPES = {
 }
 """vtkIdType is written as 32 bits whatever its size in memory; long has 8 bytes on Unix."""
 
-_CELLS = ("VERTICES", "LINES", "POLYGONS", "TRIANGLE_STRIPS")
-"""In the order in which cell data count the cells."""
+_CELLS = ("VERTICES", "LINES", "POLYGONS", "TRIANGLE_STRIPS")  # in the order in which cell data count the cells
 
 LAST_NUMBER = "last number, at the very end of the file, perhaps cut short (kept)"
 
@@ -49,33 +48,24 @@ _TEXT_BLOCK = 1 << 22
 
 
 class LegacyParser:
-    """Everything that a legacy poly data file says.
+    """Everything that a legacy poly data file holds.
 
-    Attributes
-    ----------
-    title : str
-    points : (n, 3) array
-    lines : tuple of (n_lines + 1,) offsets and (n_ids,) connectivity
-    n_cells, cells_before_lines : int
-        All cells of all kinds; vertices, which come before the lines.
-    point_data, cell_data, field : dict of str to array
-    space : str or None
-        First text of the field array ``SPACE``.
-    notes : dict of str to int
-        What to report: arrays of strings passed over, a last number that may be cut short.
+    ``lines`` are (n_lines + 1,) offsets and (n_ids,) connectivity. ``n_cells`` counts all cells of all kinds,
+    ``cells_before_lines`` the vertices, which come before the lines.
     """
 
     def __init__(self, path: str | PathLike[str]) -> None:
         self.file = MappedFile(path)
         self.path = self.file.path
         self._at = 0
-        self.points: Array = np.zeros((0, 3), np.float32)
+        self.points: Array = np.zeros((0, 3), np.float32)  # (n, 3)
         self._cells: dict[str, tuple[Ints, Ints]] = {}
         self._cells_at: dict[str, int] = {}
         self.point_data: dict[str, Array] = {}
         self.cell_data: dict[str, Array] = {}
         self.field: dict[str, Array] = {}
-        self.space: str | None = None
+        self.space: str | None = None  # first text of the field array `SPACE`
+        # what to report: arrays of strings passed over, a last number that may be cut short
         self.notes: dict[str, int] = {TEXT_ARRAYS: 0}
         self._rows: int | None = None
         self._target: dict[str, Array] = self.field

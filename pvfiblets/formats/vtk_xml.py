@@ -33,8 +33,7 @@ _MOST_TEXT = 1 << 16  # bytes
 _COMPRESSORS = {
     "": None, "vtkZLibDataCompressor": "zlib", "vtkLZMADataCompressor": "lzma", "vtkLZ4DataCompressor": "lz4"
 }  # fmt: skip
-_DENSEST_LZ4 = 256
-"""Bytes that a byte of LZ4 can become, rounded up."""
+_DENSEST_LZ4 = 256  # bytes that a byte of LZ4 can become, rounded up
 
 
 class Element:
@@ -64,20 +63,7 @@ class Element:
 
 
 class XmlFile:
-    """A VTK XML file.
-
-    Parameters
-    ----------
-    path : path-like
-    kind : {"PolyData", "ImageData"} or None
-        What it must hold; ``None``: whatever it says.
-
-    Attributes
-    ----------
-    path : str
-    content : Element
-        Of that kind.
-    """
+    """A VTK XML file."""
 
     def __init__(self, path: str | PathLike[str], kind: str | None = "PolyData") -> None:
         self.file = MappedFile(path)
@@ -100,7 +86,7 @@ class XmlFile:
             raise FormatError(
                 self.path, root.position, f"{root.tag} of type {found!r}", f"VTKFile of type {kind!r}{remedy}"
             )
-        self.content = content
+        self.content = content  # of that kind
         order = ">" if root.attributes.get("byte_order") == "BigEndian" else "<"
         self._order = order
         wide = root.attributes.get("header_type") == "UInt64"
@@ -261,7 +247,7 @@ class XmlFile:
         if size != promised:
             raise self.error(element, f"{size} bytes", f"{promised} bytes")
 
-    def _blocks(self, element: Element, source: _Source, promised: int) -> list[int]:
+    def _blocks(self, element: Element, source: _Raw | _Base64, promised: int) -> list[int]:
         """Return how many compressed blocks there are, and the bytes of one and of the last."""
         n, block, last = source.sizes(3)
         total = (n - 1) * block + (last or block) if n else 0
@@ -284,14 +270,14 @@ class XmlFile:
             raise self.error(element, f"a block of {len(data)} bytes", f"{size} bytes")
         return data
 
-    def _source(self, element: Element, appended: bool) -> _Source:
+    def _source(self, element: Element, appended: bool) -> _Raw | _Base64:
         return self._appended(element) if appended else self._inline(element)
 
-    def _inline(self, element: Element) -> _Source:
+    def _inline(self, element: Element) -> _Raw | _Base64:
         text = "".join("".join(element.text).split()).encode("ascii", "replace")
         return _Base64(self, element, text, 0, self._size_type)
 
-    def _appended(self, element: Element) -> _Source:
+    def _appended(self, element: Element) -> _Raw | _Base64:
         if self._appended_at is None:
             raise self.error(element, "format 'appended'", "an AppendedData element")
         at = self._appended_at + element.count("offset")
@@ -308,18 +294,6 @@ class _Source:
     def __init__(self, home: XmlFile, element: Element, size_type: np.dtype[Any]) -> None:
         self._home, self._element, self._size_type = home, element, size_type
 
-    def sizes(self, n: int) -> list[int]:
-        """Return the first `n` numbers."""
-        raise NotImplementedError
-
-    def compressed_sizes(self, n: int) -> Array:
-        """Return the `n` sizes of blocks that follow the three first numbers."""
-        raise NotImplementedError
-
-    def data(self, size: int) -> bytes:
-        """Return the bytes after the numbers read last."""
-        raise NotImplementedError
-
 
 class _Raw(_Source):
     def __init__(self, home: XmlFile, element: Element, at: int, size_type: np.dtype[Any]) -> None:
@@ -333,12 +307,15 @@ class _Raw(_Source):
         return values
 
     def sizes(self, n: int) -> list[int]:
+        """Return the first `n` numbers."""
         return [int(v) for v in self._take(n)]
 
     def compressed_sizes(self, n: int) -> Array:
+        """Return the `n` sizes of blocks that follow the three first numbers."""
         return _bounded(self._home, self._element, self._take(n))
 
     def data(self, size: int) -> bytes:
+        """Return the bytes after the numbers read last."""
         name = self._element.attributes.get("Name", "")
         return self._home.file.bytes(self._at, size, f"array {name!r}")
 

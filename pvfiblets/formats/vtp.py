@@ -12,7 +12,6 @@ NaN or infinity.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from os import PathLike
 from typing import Any
 from xml.sax.saxutils import escape
@@ -21,10 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
-from pvfiblets.formats.read_whole import TEXT_ARRAYS, facts, only_finite, pieces
+from pvfiblets.formats.read_whole import TEXT_ARRAYS, only_finite, whole_file
 from pvfiblets.formats.vtk_writer import write_with
 from pvfiblets.formats.vtk_xml import Element, XmlFile
-from pvfiblets.streamlines import Streamlines, from_cells
+from pvfiblets.line_cells import parts_of_cells
+from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.vtk_space import FIELD, Space, space_named, space_taken
 
 Array = NDArray[Any]
@@ -35,16 +35,6 @@ HOLDS = ("per_point", "per_streamline", "groups", "per_group")
 _CELLS = ("Verts", "Lines", "Polys", "Strips")
 
 
-def read(
-    path: str | PathLike[str],
-    *,
-    progress: bool = False,  # noqa: ARG001
-    space: Space | None = None,
-) -> Streamlines:
-    """Read a vtp file (see :func:`pvfiblets.formats.read`)."""
-    return _read(path, space)[0]
-
-
 def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, dict[str, str]]:
     """Read the streamlines, and the facts of their space."""
     file = XmlFile(path)
@@ -53,15 +43,15 @@ def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, 
     named = [e for e in holder.children("Array") if e.attributes.get("Name") == FIELD] if holder else []
     texts = file.strings(named[0]) if named else []
     space, why = space_taken(space_named(texts[0] if texts else None, file.path), given)
-    parts = []
+    pieces = []
     for piece in file.content.children("Piece"):
         streamlines, more_text = _piece(file, piece)
-        parts.append(streamlines)
+        pieces.append(streamlines)
         text += more_text
-    joined = Streamlines.concatenate(parts)
+    joined = Streamlines.concatenate(pieces)
     try:
         # The field data belong to the file, not to a piece, and name streamlines by number.
-        whole = from_cells(
+        parts = parts_of_cells(
             joined.points,
             joined.offsets,
             np.arange(joined.n_points),
@@ -70,6 +60,7 @@ def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, 
             field=field,
             space_name=space,
         )
+        whole = Streamlines(**parts)
     except ValueError as error:
         raise FormatError(file.path, None, str(error), "data that agree with each other") from error
     whole.dropped |= joined.dropped
@@ -108,7 +99,7 @@ def _piece(file: XmlFile, piece: Element) -> tuple[Streamlines, int]:
             )
     point_data, text = _arrays(file, piece.child("PointData"), n_points)
     cell_data, more = _arrays(file, piece.child("CellData"), sum(counts.values()))
-    streamlines = from_cells(
+    parts = parts_of_cells(
         points,
         offsets,
         ids,
@@ -116,6 +107,7 @@ def _piece(file: XmlFile, piece: Element) -> tuple[Streamlines, int]:
         {k: v[first : first + n] for k, v in cell_data.items()},
         other_cells=sum(counts.values()) - n,
     )
+    streamlines = Streamlines(**parts)
     return streamlines, text + more
 
 
@@ -134,15 +126,7 @@ def _arrays(file: XmlFile, holder: Element | None, rows: int | None) -> tuple[di
     return arrays, text
 
 
-def iter_chunks(path: str | PathLike[str], max_points: int, *, space: Space | None = None) -> Iterator[Streamlines]:
-    """Read the whole file, then give it in pieces (see :func:`pvfiblets.formats.iter_chunks`)."""
-    yield from pieces(read(path, space=space), max_points)
-
-
-def info(path: str | PathLike[str], *, space: Space | None = None) -> dict[str, Any]:
-    """Facts of the file, which is read whole (see :func:`pvfiblets.formats.info`)."""
-    streamlines, of_space = _read(path, space)
-    return {**facts(streamlines), **of_space}
+read, iter_chunks, info = whole_file(_read)
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:

@@ -27,11 +27,9 @@ _TYPES = {
 } | {"bit": np.dtype(bool), "bool": np.dtype(bool)}
 """Type by the last part of an entry's name; truth values take a byte each."""
 
-_DEFLATE_LIMIT = 1040
-"""Deflate cannot compress by more than 1032 to 1: a larger promise is damage."""
+_DEFLATE_LIMIT = 1040  # deflate cannot compress by more than 1032 to 1: a larger promise is damage
 
-_PIECE = 1 << 24
-"""Bytes inflated at a time where they are not wanted, or go to disk."""
+_PIECE = 1 << 24  # bytes inflated at a time where they are not wanted, or go to disk
 
 _ZIP_ERRORS = (
     BadZipFile,
@@ -50,16 +48,7 @@ _ZIP_ERRORS = (
 
 
 class ZipArrays:
-    """The arrays of a zip archive.
-
-    Attributes
-    ----------
-    path : str
-    entries : list of ArrayEntry
-        Those whose name ends in a known type.
-    odd_names : int
-        How many files have a name that says no type, besides ``header.json``.
-    """
+    """The arrays of a zip archive."""
 
     def __init__(self, path: str | PathLike[str]) -> None:
         self.file = MappedFile(path)
@@ -68,8 +57,8 @@ class ZipArrays:
             raise FormatError(self.path, 0, "an empty file", "a zip archive")
         with self.damage(0, "the archive"):
             self.archive = ZipFile(self.path)
-        self.entries: list[ArrayEntry] = []
-        self.odd_names = 0
+        self.entries: list[ArrayEntry] = []  # those whose name ends in a known type
+        self.odd_names = 0  # how many files have a name that says no type, besides `header.json`
         try:
             self._list()
         except BaseException:
@@ -273,10 +262,8 @@ class ArrayEntry:
         return native[:, 0] if self.columns == 1 else native
 
     def take(self, first: int, last: int, *, long: bool = False) -> Array:
-        """Return rows ``[first, last)`` as stored; `first` must not go back, if compressed.
-
-        Inflated rows that are `long` lie on disk (:mod:`.scratch`).
-        """
+        """Return rows ``[first, last)`` as stored; `first` must not go back, if compressed."""
+        # Inflated rows that are `long` lie on disk (`.scratch`).
         if self._info.compress_type == ZIP_STORED:
             return self._mapped(first, last)
         if self._stream is None or first < self._next:

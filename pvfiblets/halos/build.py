@@ -20,24 +20,16 @@ if TYPE_CHECKING:
 
 __all__ = ["FILTER", "SCALARS", "LinesAndValues", "as_halo_lines", "as_halo_points"]
 
-SCALARS, FILTER = "scalars", "filter"
-"""Names of unnamed arrays."""
+SCALARS, FILTER = "scalars", "filter"  # names of unnamed arrays
 
 Array = npt.NDArray[Any]
 
 
 class LinesAndValues(NamedTuple):
-    """Lines with halos, and the data of whole lines.
+    """Lines with halos, and the data of whole lines."""
 
-    Attributes
-    ----------
-    lines : HaloLines
-        Lines in the order of their source; ``lines.values`` holds the requested values at their points.
-    line_values : mapping of str to ndarray
-        ``(n_lines,)`` numbers or ``(n_lines, 4)`` float32 RGBA in 0..1: `scalars` that have a row for each line.
-    """
-
-    lines: HaloLines
+    lines: HaloLines  # lines in the order of their source; `lines.values` holds the requested values at their points
+    # `(n_lines,)` numbers or `(n_lines, 4)` float32 RGBA in 0..1: `scalars` that have a row for each line
     line_values: Mapping[str, Array]
 
 
@@ -48,23 +40,10 @@ def as_halo_lines(
     rgb: bool | None = None,
     filter_by: str | npt.ArrayLike | None = None,
 ) -> LinesAndValues:
-    """Make lines with halos of line data.
-
-    Notes
-    -----
-    A point with NaN or infinity ends its line: each piece is a line with the data of the whole, and a warning counts
-    them. A point that several lines use becomes a point of each. Where cells of two points were joined to lines, their
-    data is that of segments: a point has the mean of the two that meet there.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from pvfiblets.halos.build import as_halo_lines
-    >>> t = np.linspace(0, 6, 30)
-    >>> lines, _ = as_halo_lines(np.stack([10 * np.cos(t), 10 * np.sin(t), t], axis=1), scalars=t)
-    >>> lines.n_lines, lines.n_segments, sorted(lines.values)
-    (1, 29, ['scalars'])
-    """
+    """Make lines with halos of line data."""
+    # A point with NaN or infinity ends its line: each piece is a line with the data of the whole, and a warning counts
+    # them. A point that several lines use becomes a point of each. Where cells of two points were joined to lines,
+    # their data is that of segments: a point has the mean of the two that meet there.
     if isinstance(source, HaloLines):
         ids = np.arange(source.n_points)
         made = _Lines(Lines(source.points, ids, source.offsets, source.n_lines, source.values), source.values)
@@ -80,15 +59,7 @@ def as_halo_points(
     rgb: bool | None = None,
     filter_by: str | npt.ArrayLike | None = None,
 ) -> HaloPoints:
-    """Make points with halos of a point cloud.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from pvfiblets.halos.build import as_halo_points
-    >>> as_halo_points(np.eye(3, dtype=np.float32), scalars=[1, 2, 3]).n_points
-    3
-    """
+    """Make points with halos of a point cloud."""
     points, rows, elsewhere = _points_of(source)
     kept = dict(source.values) if isinstance(source, HaloPoints) else {}
     values: dict[str, Array] = {}

@@ -10,8 +10,6 @@ import numpy.typing as npt
 
 from .style import DISPLACEMENTS, TABLE_SIZE
 
-__all__ = ["Displacement", "as_displacement", "displaced", "table_places"]
-
 Displacement: TypeAlias = str | Sequence[float] | npt.NDArray[Any] | Callable[[npt.NDArray[np.float64]], Any]
 """Types that :func:`as_displacement` takes: a name, a table, or a function."""
 
@@ -20,22 +18,10 @@ _ROUNDING = 1e-9
 
 
 def as_displacement(given: Displacement) -> str | tuple[float, ...]:
-    """Bring a displacement function into the form that :class:`.HaloStyle` takes.
-
-    Notes
-    -----
-    Source: Everts et al. 2009, section 3.3, equation 3 and figure 17. Between its places a table is linear, so that a
-    square root given as a function has an error of 1/32 close to 0, and of less than 0.001 from 0.15 on; the three
-    that have names are exact.
-
-    Examples
-    --------
-    >>> from pvfiblets.halos.displacement import as_displacement
-    >>> as_displacement([0, 0.25, 1])
-    (0.0, 0.25, 1.0)
-    >>> len(as_displacement(lambda x: x**3))
-    64
-    """
+    """Bring a displacement function into the form that :class:`.HaloStyle` takes."""
+    # Source: Everts et al. 2009, section 3.3, equation 3 and figure 17. Between its places a table is linear, so that a
+    # square root given as a function has an error of 1/32 close to 0, and of less than 0.001 from 0.15 on; the three
+    # that have names are exact.
     if isinstance(given, str):
         if given not in DISPLACEMENTS:
             raise ValueError(f"displacement is {given!r}; choose one of {DISPLACEMENTS}, or give a table or a function")
@@ -51,14 +37,7 @@ def as_displacement(given: Displacement) -> str | tuple[float, ...]:
 
 
 def displaced(x: npt.ArrayLike, displacement: Displacement) -> npt.NDArray[np.float64]:
-    """Evaluate a displacement function.
-
-    Examples
-    --------
-    >>> from pvfiblets.halos.displacement import displaced
-    >>> displaced([0, 0.5, 1], "square").tolist()
-    [0.0, 0.25, 1.0]
-    """
+    """Evaluate a displacement function."""
     form = as_displacement(displacement)
     places = np.clip(np.asarray(x, np.float64), 0.0, 1.0)
     if form == "linear":

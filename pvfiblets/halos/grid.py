@@ -14,18 +14,10 @@ _TABLE = 20  # bits of the table of cells that are looked for: 1 MB, which stays
 
 
 class Grid:
-    """Grid of cells: neighbours within a cell's width of a place lie in the 27 cells around it.
-
-    Parameters
-    ----------
-    places : ndarray
-        ``(n, 3)`` float64, from 0 to 1.
-    width : float
-        Of a cell.
-    """
+    """Grid of cells: neighbours within a cell's width of a place lie in the 27 cells around it."""
 
     def __init__(self, places: Doubles, width: float) -> None:
-        self._width = width
+        self._width = width  # of a cell
         # Two more on either side: places are in the frame but for rounding, and cells next to theirs are looked up.
         # With very small cells the numbers wrap around, and still differ where that matters.
         across = int(1.0 / width) + 6

@@ -6,8 +6,6 @@ import numpy as np
 
 from pvfiblets.halos.geometry import HaloLines
 
-__all__ = ["arc_lengths", "line_lengths"]
-
 
 def line_lengths(lines: HaloLines) -> np.ndarray:
     """Return the length of each line."""

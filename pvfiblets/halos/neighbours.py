@@ -28,11 +28,9 @@ Ints = npt.NDArray[np.int64]
 _SAME = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-9}
 """Distances, by the largest coordinate, up to which places are one and the same."""
 
-_EXACT = 0.01
-"""A distance is found when none can be less by more than this share of it."""
+_EXACT = 0.01  # A distance is found when none can be less by more than this share of it
 
-_SKIPPED = 8
-"""Things through a place that are passed over before the place is given up."""
+_SKIPPED = 8  # things through a place that are passed over before the place is given up
 
 _BLOCK = 1 << 17  # arcs handled at a time, a few MB
 _COARSE = 1 << 19  # arcs at most that all lines are covered by to begin with, and one more for each line
@@ -48,24 +46,12 @@ _WHOLE = 2.0  # radius that reaches from anywhere in a box of size 1 to anywhere
 
 @dataclass(frozen=True)
 class Frame:
-    """The bounds that points are measured in, so that numbers are near 1 whatever the millimetres are.
+    """The bounds that points are measured in, so that numbers are near 1 whatever the millimetres are."""
 
-    Parameters
-    ----------
-    origin : ndarray
-        ``(3,)`` float64, mm: their lower corner.
-    size : float
-        mm, their largest extent.
-    diagonal : float
-        mm.
-    same : float
-        Distance, by `size`, up to which places are one and the same.
-    """
-
-    origin: Doubles
-    size: float
-    diagonal: float
-    same: float
+    origin: Doubles  # `(3,)` float64, mm: their lower corner
+    size: float  # mm, their largest extent
+    diagonal: float  # mm
+    same: float  # distance, by `size`, up to which places are one and the same
 
     @classmethod
     def around(cls, points: npt.NDArray[Any]) -> Frame:
@@ -104,17 +90,10 @@ class _Things(Protocol):
 
 
 class Paths:
-    """Lines of two points and more, end to end: a place is a line and an arc length from the first one's start.
-
-    Parameters
-    ----------
-    lines : HaloLines
-    frame : Frame
-        Of all their points.
-    """
+    """Lines of two points and more, end to end: a place is a line and an arc length from the first one's start."""
 
     def __init__(self, lines: HaloLines, frame: Frame) -> None:
-        self.frame, self.points = frame, lines.points
+        self.frame, self.points = frame, lines.points  # of all their points
         some = np.flatnonzero(np.diff(lines.offsets) > 1)
         self.starts, self.ends = lines.offsets[some], lines.offsets[some + 1] - 1
         steps = np.zeros(lines.n_points)
@@ -168,18 +147,10 @@ class Paths:
 
 
 class Cloud:
-    """Points, each a thing of its own and of no length.
-
-    Parameters
-    ----------
-    points : ndarray
-        ``(n, 3)``, mm.
-    frame : Frame
-        Of all of them.
-    """
+    """Points, each a thing of its own and of no length."""
 
     def __init__(self, points: npt.NDArray[Any], frame: Frame) -> None:
-        self.points, self.frame = points, frame
+        self.points, self.frame = points, frame  # `(n, 3)` mm, and the frame of all of them
 
     def at(self, thing: Ints, where: Doubles | None = None) -> Doubles:
         """Points by index."""
@@ -319,11 +290,9 @@ def _known(things: _Things, pairs: _Pairs, radius: float) -> Doubles:
 
 
 def _nearest(things: _Things, pairs: _Pairs) -> tuple[Doubles, Ints]:
-    """Distance from each place to the nearest of its arcs, and whose that is.
-
-    No place of an arc is farther from its middle than half its length: so an arc whose middle is by more than that
-    farther away than another's is out. The others are divided, until none can be nearer by what matters.
-    """
+    """Distance from each place to the nearest of its arcs, and whose that is."""
+    # No place of an arc is farther from its middle than half its length: so an arc whose middle is by more than that
+    # farther away than another's is out. The others are divided, until none can be nearer by what matters.
     best, which = np.full(len(pairs.places), np.inf), np.full(len(pairs.places), -1)
     while len(pairs.place):
         distance = _lengths(things.at(pairs.thing, pairs.where) - pairs.places[pairs.place])

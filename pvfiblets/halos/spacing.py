@@ -10,24 +10,11 @@ import numpy.typing as npt
 from .geometry import HaloLines, HaloPoints
 from .neighbours import Cloud, Frame, Paths, distances
 
-__all__ = ["default_widths", "line_spacing", "point_spacing"]
-
-_ALONE = 1.0 / 60.0
-"""Spacing of data without neighbours, as a share of the bounds' diagonal."""
+_ALONE = 1.0 / 60.0  # spacing of data without neighbours, as a share of the bounds' diagonal
 
 
 def line_spacing(lines: HaloLines, samples: int = 2000, seed: int = 0) -> float:
-    """Return the spacing of lines.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from pvfiblets.halos import HaloLines
-    >>> from pvfiblets.halos.spacing import line_spacing
-    >>> points = [[0, 0, 0], [100, 0, 0], [0, 2, 0], [100, 2, 0]]
-    >>> round(line_spacing(HaloLines(np.array(points), [0, 2, 4])), 3)
-    2.0
-    """
+    """Return the spacing of lines."""
     _check_samples(samples)
     frame = Frame.around(lines.points)
     paths = Paths(lines, frame)
@@ -58,23 +45,19 @@ def default_widths(
     strip_width: float | None = None,
     max_displacement: float | None = None,
 ) -> tuple[float, float, float]:
-    """Widths and the displacement that suit the data.
-
-    Notes
-    -----
-    Everts et al. 2009, section 4.3, have strips 4 to 8 times as wide as their lines, and 8 to 27 times for points
-    (printed the other way round), and thinner lines for more of them.
-
-    - A line takes 2/5 of the spacing, so that a sheet of lines that all lie in front is half white, half black.
-      Where the data fill a window of 1000 pixels, that is at least about a pixel (1/1200 of the diagonal of the bounds;
-      of points 1/1500), however dense they are: thinner ones would be as thick on the screen, and all of it grey. It
-      is at most 1/200.
-    - A strip is 6 times as wide (of points 10 times), and so reaches over one to two neighbours (of points two). Of
-      dense data it is wider, up to 8 (19) times, for its halo to be about three pixels wide in such a window.
-    - Its edge lies 4 times its width behind. So within a strip a line behind is seen if it is at most 8 times as far
-      behind as it is away on the screen: bundles and surfaces stay together at all but grazing angles, and lines that
-      cross farther behind are set apart. Doubling it lets layers behind a sheet of lines show through it.
-    """
+    """Widths and the displacement that suit the data."""
+    # Everts et al. 2009, section 4.3, have strips 4 to 8 times as wide as their lines, and 8 to 27 times for points
+    # (printed the other way round), and thinner lines for more of them.
+    #
+    # - A line takes 2/5 of the spacing, so that a sheet of lines that all lie in front is half white, half black.
+    #   Where the data fill a window of 1000 pixels, that is at least about a pixel (1/1200 of the diagonal of the
+    #   bounds; of points 1/1500), however dense they are: thinner ones would be as thick on the screen, and all of it
+    #   grey. It is at most 1/200.
+    # - A strip is 6 times as wide (of points 10 times), and so reaches over one to two neighbours (of points two). Of
+    #   dense data it is wider, up to 8 (19) times, for its halo to be about three pixels wide in such a window.
+    # - Its edge lies 4 times its width behind. So within a strip a line behind is seen if it is at most 8 times as far
+    #   behind as it is away on the screen: bundles and surfaces stay together at all but grazing angles, and lines that
+    #   cross farther behind are set apart. Doubling it lets layers behind a sheet of lines show through it.
     diagonal = Frame.around(drawn.points).diagonal or 1.0
     shape = _LINES if isinstance(drawn, HaloLines) else _POINTS
     if line_width is None:
@@ -91,25 +74,13 @@ def default_widths(
 
 @dataclass(frozen=True)
 class _Proportions:
-    """Limits of widths, by the widths of lines or as parts of the diagonal of the bounds.
+    """Limits of widths, by the widths of lines or as parts of the diagonal of the bounds."""
 
-    Parameters
-    ----------
-    thinnest, thickest : float
-        A line is at least and at most one such part of the diagonal.
-    strip : float
-        A strip is at least so many times as wide as its line.
-    narrowest : float
-        It is at least such a part of the diagonal too, if it can be with `widest`.
-    widest : float
-        It is at most so many times as wide as its line.
-    """
-
-    thinnest: float
+    thinnest: float  # A line is at least and at most one such part of the diagonal
     thickest: float
-    strip: float
-    narrowest: float
-    widest: float
+    strip: float  # A strip is at least so many times as wide as its line
+    narrowest: float  # it is at least such a part of the diagonal too, if it can be with `widest`
+    widest: float  # it is at most so many times as wide as its line
 
 
 _LINES = _Proportions(1200.0, 200.0, 6.0, 150.0, 8.0)

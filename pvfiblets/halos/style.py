@@ -8,11 +8,9 @@ from typing import Any
 
 __all__ = ["DISPLACEMENTS", "TABLE_SIZE", "HaloStyle"]
 
-DISPLACEMENTS = ("linear", "square", "square root")
-"""Displacement functions by name (paper: figure 17)."""
+DISPLACEMENTS = ("linear", "square", "square root")  # displacement functions by name (paper: figure 17)
 
-TABLE_SIZE = 64
-"""Entries of a displacement function given as a table may be as many as that."""
+TABLE_SIZE = 64  # entries of a displacement function given as a table may be as many as that
 
 MAX_TAPERED = 1000
 

@@ -10,8 +10,6 @@ import numpy.typing as npt
 from .displacement import Displacement, as_displacement, displaced, table_places
 from .style import HaloStyle
 
-__all__ = ["halo_width"]
-
 
 def halo_width(
     dz: npt.ArrayLike,

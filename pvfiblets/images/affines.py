@@ -9,8 +9,7 @@ __all__ = ["affine", "invert_affine"]
 
 Array = npt.NDArray[np.float64]
 
-_WORST_CONDITION = 1e12
-"""Beyond, a float64 inverse has fewer than four digits left."""
+_WORST_CONDITION = 1e12  # beyond, a float64 inverse has fewer than four digits left
 
 
 def affine(matrix: npt.ArrayLike, name: str) -> Array:

@@ -7,14 +7,11 @@ from pathlib import Path
 
 from .image import Image
 
-__all__ = ["SUFFIXES", "read_image", "stem_of"]
-
 _NIFTI = (".nii", ".nii.gz", ".mgh", ".mgz")
 _MIF = (".mif", ".mif.gz", ".mih")
 _NRRD = (".nrrd", ".nhdr")
 _METAIMAGE = (".mhd", ".mha")
-SUFFIXES = (*_NIFTI, *_MIF, *_NRRD, *_METAIMAGE, ".vti")
-"""Suffixes of files with a header."""
+SUFFIXES = (*_NIFTI, *_MIF, *_NRRD, *_METAIMAGE, ".vti")  # suffixes of files with a header
 
 
 def stem_of(name: str) -> str:

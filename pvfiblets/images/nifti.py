@@ -22,15 +22,12 @@ from .image import Image
 
 __all__ = ["of_nibabel", "read_nifti"]
 
-LABEL_INTENT = 1002
-"""NIFTI_INTENT_LABEL."""
+LABEL_INTENT = 1002  # NIFTI_INTENT_LABEL
 
-FINE = 0.01
-"""Tolerance of scaled numbers, as a part of a stored step."""
+FINE = 0.01  # tolerance of scaled numbers, as a part of a stored step
 
 PIECE = 1 << 18  # bytes
-LIKELY = 8
-"""Compressed data that should swell by more are counted before memory is taken for them."""
+LIKELY = 8  # compressed data that should swell by more are counted before memory is taken for them
 
 
 def read_nifti(path: Path) -> Image:

@@ -15,11 +15,9 @@ Array = npt.NDArray[np.float64]
 
 
 def sample(values: npt.NDArray[Any], to_voxel: Array, points: npt.ArrayLike, *, nearest: bool = False) -> Array:
-    """Return values at points ``(n, 3)``, ``(n,)``: trilinear between the centres of voxels, or the nearest voxel's.
-
-    A voxel reaches half a voxel around its centre; in the outer half of the outermost ones their own values go on.
-    Outside, and where a voxel that takes part is NaN, the value is NaN.
-    """
+    """Return values at points ``(n, 3)``, ``(n,)``: trilinear between the centres of voxels, or the nearest voxel's."""
+    # A voxel reaches half a voxel around its centre; in the outer half of the outermost ones their own values go on.
+    # Outside, and where a voxel that takes part is NaN, the value is NaN.
     given = np.asarray(points, np.float64)
     sides = np.array(values.shape)
     found = np.full(len(given), np.nan)

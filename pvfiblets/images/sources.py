@@ -13,8 +13,6 @@ from .affines import affine as checked
 from .files import SUFFIXES, read_image
 from .image import Image
 
-__all__ = ["EXPECTED", "as_image", "colour_fields", "filled", "is_image"]
-
 EXPECTED = (
     f"the path of an image ({', '.join(SUFFIXES)}), an image of nibabel, (array, affine), a pyvista.ImageData, or "
     "anything with values and affine"

@@ -16,8 +16,6 @@ from pvfiblets.support.memory import check_room
 
 from .image import Image
 
-__all__ = ["array_of", "of_vtk", "open_vti", "place_of", "read_vti"]
-
 
 def read_vti(path: Path) -> Image:
     """Read an image of VTK's."""
@@ -118,10 +116,8 @@ def _read(reader: Any, path: Path) -> Any:
 
 
 def _check_sizes(path: Path) -> None:
-    """Compare the sizes that a ``.vti`` file tells with each other and with its own.
-
-    VTK takes the memory that a file declares, and ends the process if there is too little.
-    """
+    """Compare the sizes that a ``.vti`` file tells with each other and with its own."""
+    # VTK takes the memory that a file declares, and ends the process if there is too little.
     file = XmlFile(path, "ImageData")
     pieces = [(piece, _sides(file, piece, "Extent")) for piece in file.content.children("Piece")]
     whole, held = math.prod(_sides(file, file.content, "WholeExtent")), sum(math.prod(sides) for _, sides in pieces)

@@ -30,8 +30,7 @@ _UNUSED = {
 class ActorLink:
     """The actor of a mapper, and the shader pieces in it; keeps neither alive."""
 
-    found = False
-    """Whether the actor was given the mapper by ``SetMapper``, not by `attach`."""
+    found = False  # whether the actor was given the mapper by `SetMapper`, not by `attach`
     installed: tuple[resolve.Replacement, ...] = ()
 
     def __init__(self, mapper: vtkMapper) -> None:

@@ -17,8 +17,6 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkProp, vtkRenderer, vtkRende
 
 from pvfiblets.mappers.scene import actors_in, items_of, renderers_of
 
-__all__ = ["actor_of"]
-
 # Methods of objects with a window or a renderer: vtkRenderWindowInteractor, vtkWindowToImageFilter and others.
 _LEADS = ("GetRenderWindow", "GetInput", "GetRenderer")
 

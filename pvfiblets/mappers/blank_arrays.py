@@ -6,22 +6,13 @@ from typing import Any
 
 import moderngl
 
-__all__ = ["BlankArrays"]
-
 
 class BlankArrays:
-    """Arrays of one texel, zero; no other kind of texture will do for such a sampler.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    said : str
-        What :meth:`buffers` adds to their names.
-    """
+    """Arrays of one texel, zero; no other kind of texture will do for such a sampler."""
 
     def __init__(self, ctx: Any, said: str) -> None:
         self._ctx = ctx
-        self._said = said
+        self._said = said  # what `buffers` adds to their names
         self._made: dict[str, Any] = {}
 
     def of(self, name: str, components: int, dtype: str) -> Any:

@@ -9,8 +9,6 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from typing import Any
 
-__all__ = ["class_name"]
-
 _NAME = "pvfibletsMapper"
 _MAPPER_OF_VTK_JS = "vtkMapper"
 

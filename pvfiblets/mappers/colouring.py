@@ -176,13 +176,7 @@ class Colouring:
         return self.source if self.kind.numbers == "points" else self.opacity_source
 
     def table(self) -> npt.NDArray[np.uint8]:
-        """Return the look-up table with its three special colours.
-
-        Returns
-        -------
-        numpy.ndarray
-            (k + 3, 4) uint8: the table, then the colours of values below, above, and of NaN.
-        """
+        """Return the look-up table, (k + 3, 4) uint8: the last rows are for values below, above, and NaN."""
         if self.lut is None:
             raise ValueError(f"mode {self.mode!r} has no look-up table")
         below = self.lut[0] if self.below_color is None else _bytes(self.below_color)
@@ -192,10 +186,8 @@ class Colouring:
     def scaled_range(
         self, clim: tuple[float, float] | None = None, *, reference: float = 0.0
     ) -> tuple[float, float, float]:
-        """Return lo, hi and entries per unit of the table's scale, or of other ends, less a reference of the values.
-
-        On a log scale, lo and hi are logarithms, and above 0 the reference's own is subtracted.
-        """
+        """Return lo, hi and entries per unit of the table's scale, or of other ends, less a reference of the values."""
+        # On a log scale, lo and hi are logarithms, and above 0 the reference's own is subtracted.
         clim = self.clim if clim is None else clim
         if self.lut is None or clim is None:
             raise ValueError(f"mode {self.mode!r} has no look-up table")
@@ -207,18 +199,7 @@ class Colouring:
         return float(low), float(high), len(self.lut) / span if span > 0.0 else 3.0e38
 
     def map_values(self, values: npt.ArrayLike) -> npt.NDArray[np.uint8]:
-        """Map numbers to colours as ``vtkLookupTable`` does.
-
-        Parameters
-        ----------
-        values : array_like
-            (n,) numbers.
-
-        Returns
-        -------
-        numpy.ndarray
-            (n, 4) uint8 RGBA.
-        """
+        """Return (n, 4) uint8 RGBA of (n,) numbers, as ``vtkLookupTable`` maps them."""
         table = self.table()
         entries = len(table) - 3
         low, high, scale = self.scaled_range()
@@ -258,13 +239,7 @@ class Colouring:
         return found
 
     def check_count(self, n_streamlines: int) -> None:
-        """Raise unless values per streamline are as many as streamlines.
-
-        Raises
-        ------
-        ValueError
-            They are not.
-        """
+        """Raise a ValueError unless values per streamline are as many as streamlines."""
         if self.opacities is not None and len(self.opacities) != n_streamlines:
             raise ValueError(
                 f"there are {len(self.opacities)} opacities for {n_streamlines} streamlines; give one per streamline, "

@@ -29,10 +29,8 @@ _SETTINGS = ("ScalarVisibility", "ColorMode", "ScalarMode", "InterpolateScalarsB
 class Connection:
     """The input of VTK's half of a mapper; the mapper is not kept alive."""
 
-    proxy: vtkPolyData | None = None
-    """The triangles."""
-    input: VtkInput | None = None
-    """The filter with the user's data; None without a connection."""
+    proxy: vtkPolyData | None = None  # the triangles
+    input: VtkInput | None = None  # the filter with the user's data; None without a connection
 
     def __init__(self, mapper: vtkMapper) -> None:
         self._mapper = weak(mapper)

@@ -17,10 +17,7 @@ from pvfiblets.mappers.shifted_cameras import draws_sample
 if TYPE_CHECKING:
     from pvfiblets.mappers.shader_effects import Draw
 
-__all__ = ["TONES", "Density"]
-
-TONES = ("log", "sqrt", "linear")
-"""Functions from the number of lines to brightness."""
+TONES = ("log", "sqrt", "linear")  # functions from the number of lines to brightness
 
 
 @dataclass(frozen=True)
@@ -30,31 +27,16 @@ class Density(ShaderEffect):
     With a colouring of mode ``'pixel_count'`` the number of lines in a pixel goes through its table. With any other,
     a pixel has the mean colour of its lines (of directions, at full brightness), the more of it the more lines there
     are, over the background.
-
-    Parameters
-    ----------
-    bright : bool, default True
-        Whether brightness tells the number of lines; False with a colouring of mode ``'pixel_count'``.
-    thin : bool, default True
-        Whether lines are a pixel wide whatever their width, so that each takes the pixels that it runs through once.
-    most : float, optional
-        Lines in a pixel of full brightness, or of the table's last colour; the number in the frame's fullest pixel by
-        default.
-    tone : {'log', 'sqrt', 'linear'}
-        How brightness grows with n of m lines: log(1 + n) / log(1 + m), sqrt(n / m), n / m.
-    found : callable, optional
-        Told the number of lines in the fullest pixel of every picture, where ``most`` is not given.
-
-    Raises
-    ------
-    ValueError
-        If ``most`` is not a finite number above 0, or there is no such tone.
     """
 
-    bright: bool = True
+    bright: bool = True  # whether brightness tells the number of lines; False with a colouring of mode `'pixel_count'`
+    # whether lines are a pixel wide whatever their width, so that each takes the pixels that it runs through once
     thin: bool = True
+    # lines in a pixel of full brightness, or of the table's last colour; the number in the frame's fullest pixel by
+    # default
     most: float | None = None
-    tone: str = "log"
+    tone: str = "log"  # how brightness grows with n of m lines: log(1 + n) / log(1 + m), sqrt(n / m), n / m
+    # told the number of lines in the fullest pixel of every picture, where `most` is not given
     found: Callable[[float], None] | None = field(default=None, compare=False)
 
     translucent = True

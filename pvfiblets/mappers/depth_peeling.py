@@ -24,8 +24,6 @@ _BESIDE = {
 
 _EMPTY = {"depth": (1, "u4"), "ids": (2, "u4"), "position": (2, "f4"), "across": (1, "f2"), "normal": (1, "u4")}
 
-__all__ = ["Layers", "layers_of", "with_layers"]
-
 
 class _Held:
     """State of one window: the engine that has layers, or empty textures in their place."""
@@ -67,20 +65,10 @@ class _Held:
 
 @dataclass(frozen=True)
 class Layers(ShaderEffect):
-    """Shows several layers where the actor is translucent.
+    """Shows several layers where the actor is translucent."""
 
-    Parameters
-    ----------
-    count : int, default 4
-        Layers, 2 to 64. What lies behind the last is not seen. Each takes 44 bytes a pixel and is drawn from all
-        fiblets in view, whenever the camera, the data or the style has changed.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer or more.
-    """
-
+    # layers, 2 to 64. What lies behind the last is not seen. Each takes 44 bytes a pixel and is drawn from all fiblets
+    # in view, whenever the camera, the data or the style has changed.
     count: int = 4
     features: ClassVar[frozenset[str]] = frozenset({"layers", "layers_covered", "layers_geometry"})
 

@@ -19,11 +19,6 @@ if TYPE_CHECKING:
     from pvfiblets.mappers.colouring import Colouring
     from pvfiblets.streamlines import Streamlines
 
-__all__ = [
-    "fiblet_lines", "halo_lines", "near_ray", "point_flags", "shown_points", "shown_streamlines", "thinned",
-    "tube_lines",
-]  # fmt: skip
-
 
 def thinned(counts: npt.NDArray[Any], budget: int) -> npt.NDArray[np.int64]:
     """Return which lines to keep so that they have a number of points at most: evenly every second, third ..."""

@@ -65,8 +65,7 @@ if TYPE_CHECKING:
 
 _ONE_ACTOR = "give each actor a mapper of its own (mapper.ShallowCopy(other) shares the data)"
 
-SMOOTHED_BESIDE = 3.0
-"""Pixels beside lines that may take a share of them."""
+SMOOTHED_BESIDE = 3.0  # pixels beside lines that may take a share of them
 
 AnyOptions = TypeVar("AnyOptions", bound=Options)
 
@@ -77,23 +76,6 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     ``actor.SetMapper(mapper)`` gives it to an actor, or `attach`. One mapper serves one actor, in any number of
     renderers and windows; each window has GPU memory of its own.
 
-    Parameters
-    ----------
-    drawn : Any
-        What to draw; it has ``n_streamlines``, ``n_points``, ``bounds`` and ``promise``. None for the data connected by
-        ``SetInputConnection`` or ``SetInputData``, which replaces the argument when it is called.
-    colouring : Colouring, optional
-        Where the colours come from; None leaves them to ``vtkMapper``'s own settings and to the actor's property.
-    options : Options
-        What can be chosen about drawing.
-    renderer_factory : callable
-        Takes a moderngl context, the data, and as keywords the options that differ from the defaults; returns
-        the engine's renderer.
-    **made_with
-        Further keywords of the factory.
-
-    Notes
-    -----
     An exception while drawing cannot pass through VTK. It is stored, nothing is drawn, and
     `raise_pending` raises it: call that after every render.
 
@@ -111,16 +93,21 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     def __init__(
         self,
+        # what to draw; it has `n_streamlines`, `n_points`, `bounds` and `promise`. None for the data connected by
+        # `SetInputConnection` or `SetInputData`, which replaces the argument when it is called.
         drawn: Any,
         *,
+        # where the colours come from; None leaves them to `vtkMapper`'s own settings and to the actor's property
         colouring: Colouring | None,
-        options: AnyOptions,
+        options: AnyOptions,  # what can be chosen about drawing
+        # takes a moderngl context, the data, and as keywords the options that differ from the defaults; returns the
+        # engine's renderer
         renderer_factory: Callable[..., Any],
         **made_with: Any,
     ) -> None:
         self._factory = renderer_factory
         self._options = options
-        self._made_with = made_with
+        self._made_with = made_with  # further keywords of the factory
         self._link = ActorLink(self)
         self._connection = Connection(self)
         self.reading = LineReading(self, self._connection, self._link)
@@ -222,16 +209,10 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         return self._link.actor
 
     def attach(self, actor: vtkActor) -> None:
-        """Make this the mapper of an actor and add the shader pieces to it.
-
-        ``actor.SetMapper(mapper)`` does the same, once VTK draws the actor.
-
-        Parameters
-        ----------
-        actor : vtkActor
-            Shader replacements of others stay. Its representation stays at surface whatever a key or a
-            menu sets for all actors: lines have no wireframe and no edges, and all that shows is a front.
-        """
+        """Make this the mapper of an actor and add the shader pieces to it."""
+        # `actor.SetMapper(mapper)` does the same, once VTK draws the actor. Shader replacements of others stay. The
+        # representation stays at surface whatever a key or a menu sets for all actors: lines have no wireframe and no
+        # edges, and all that shows is a front.
         self._link.attach(actor)
 
     def detach(self) -> None:
@@ -385,14 +366,8 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         return SeenThrough(buffer.depth)
 
     def cut_in(self, renderer: vtkRenderer, planes: Any) -> None:
-        """Cut in one of the renderers that show it, and not in the others.
-
-        Parameters
-        ----------
-        renderer : vtkRenderer
-        planes : array_like or None
-            ``(k, 4)`` of a, b, c, d in world mm: a point is kept where ax + by + cz + d >= 0. None for no cut.
-        """
+        """Cut by (k, 4) planes in world mm in one of the renderers that show it, and not in the others."""
+        # A point is kept where ax + by + cz + d >= 0; None for no cut.
         address = renderer.GetAddressAsString("")
         wanted = None if planes is None else np.array(planes, np.float64).reshape(-1, 4)
         if np.array_equal(wanted, self._cuts_in.get(address)):  # type: ignore[arg-type]  # None, too
@@ -525,10 +500,8 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         super().ColorByArrayComponent(array, component)
 
     def ShallowCopy(self, other: Any) -> None:  # noqa: N802 - VTK's name
-        """Become like another mapper: its input, its settings of ``vtkMapper`` and, of one of these, all others.
-
-        Compressed and other data are shared, not copied. Each mapper serves an actor of its own.
-        """
+        """Become like another mapper: its input, its settings of ``vtkMapper`` and, of one of these, all others."""
+        # Compressed and other data are shared, not copied. Each mapper serves an actor of its own.
         super().ShallowCopy(other)
         self._component = other.GetArrayComponent()
         if not isinstance(other, type(self)):
@@ -616,14 +589,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         return [slot.renderer for slot in slots if slot.renderer is not None]
 
     def explain(self) -> dict[str, Any]:
-        """Return the active passes, features and buffers of the engine and of the resolve.
-
-        Returns
-        -------
-        dict
-            Keys of the engine's ``explain`` per window in ``windows``; ``features``: pieces of the resolve
-            shader; ``textures``: name and bytes of the textures of the mapper and its effects.
-        """
+        """Return the ``features`` and ``textures`` (name, bytes) of the resolve, and the engine's work per window."""
         windows, textures = [], []
         for context in contexts_with(self):
             slot = context.slots[self._address]
@@ -649,13 +615,8 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     # Memory
 
     def release(self, window: Any = None) -> None:
-        """Delete the GL objects of one window, or of all; twice is harmless.
-
-        Parameters
-        ----------
-        window : vtkRenderWindow, optional
-            All windows when left out. Call it before a window is closed, to have the memory back at once.
-        """
+        """Delete the GL objects of one window, or of all; twice is harmless."""
+        # Call it before a window is closed, to have the memory back at once.
         address = None if window is None else window.GetAddressAsString("")
         for context in contexts_with(self):
             if address in (None, context.address):

@@ -95,13 +95,7 @@ class FibletMapper(FilteredMapper[EngineOptions]):
         return self._drawn
 
     def set_fiblets(self, fiblets: Any) -> None:
-        """Draw other fiblets from the next frame on.
-
-        Raises
-        ------
-        ValueError
-            The colouring has values for another number of streamlines.
-        """
+        """Draw other fiblets from the next frame on, unless the colouring is for another number of them."""
         self._put(fiblets)
 
     @property
@@ -198,19 +192,11 @@ class FibletMapper(FilteredMapper[EngineOptions]):
         return engine
 
     def draw_in_pieces(self, renderer: vtkRenderer, sample_camera: Any = None) -> Iterator[None]:
-        """Draw, piece by piece, what the next frame of a renderer needs; the frame then finds it drawn.
-
-        Yields after each piece (`pvfiblets.engine.drawable.Drawable.render_in_pieces`). Others may draw in between, and
-        anything may change: the picture is then useless. Nothing is drawn for a window that has not shown the
-        actor yet, while `vtkHardwareSelector` selects, or where VTK draws real lines.
-
-        Parameters
-        ----------
-        renderer : vtkRenderer
-            That shows the actor.
-        sample_camera : vtkCamera, optional
-            The camera of the next frame, if that is a sample (`antialias_refinement.py`).
-        """
+        """Draw, piece by piece, what the next frame of a renderer needs; the frame then finds it drawn."""
+        # Yields after each piece (`pvfiblets.engine.drawable.Drawable.render_in_pieces`). Others may draw in between,
+        # and anything may change: the picture is then useless. Nothing is drawn for a window that has not shown the
+        # actor yet, while `vtkHardwareSelector` selects, or where VTK draws real lines. `sample_camera` is that of the
+        # next frame, if that is a sample (`antialias_refinement.py`).
         window, actor, context = renderer.GetRenderWindow(), self.actor, self._context_in(renderer)
         if context is None or actor is None or self.is_readable or self._empty or renderer.GetSelector() is not None:
             return
@@ -252,13 +238,7 @@ class FibletMapper(FilteredMapper[EngineOptions]):
     def sample_layers(self, renderer: vtkRenderer, lines: Sequence[FibletMapper]) -> Generator[Any, None, None]:
         """Yield what the engine does (`pvfiblets.engine.fiblets.sample_layers`) for samples of what a renderer shows.
 
-        Others may draw in between.
-
-        Parameters
-        ----------
-        renderer : vtkRenderer
-        lines : sequence of FibletMapper
-            All that it shows, this first.
+        Others may draw in between. ``lines`` are all that it shows, this first.
         """
         context = self._context_in(renderer)
         assert context is not None
@@ -292,39 +272,14 @@ class FibletMapper(FilteredMapper[EngineOptions]):
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
     ) -> tuple[int, float] | None:
-        """Return the streamline nearest to a pixel of the last frame.
-
-        Parameters
-        ----------
-        x, y : float
-            Pixel of the window, from its lower left corner, as VTK's events give it.
-        renderer : vtkRenderer, optional
-            Which renderer's picture to look into; by default the one that was drawn last.
-        tolerance : int, default 2
-            How many pixels away a line may be.
-
-        Returns
-        -------
-        tuple of int and float, or None
-            Streamline id and position along it: the index of the point before, plus the fraction of
-            the segment. None where there is no fiblet. Other actors in front are not looked at.
-        """
+        """Return the streamline nearest to a pixel of the last frame, and the position along it; None for no fiblet."""
+        # x and y count from the window's lower left corner. The position is the index of the point before plus the
+        # fraction of the segment. Other actors in front are not looked at.
         found = nearest_pixel(self, (x, y), ("ids", "position"), renderer=renderer, tolerance=tolerance)
         return None if found is None else (int(found.texels["ids"][0]), float(found.texels["position"][0]))
 
     def region_flags(self, region: Any, sampling: Sampling = "lines") -> Any:
-        """Return how each streamline lies to a region, by the GPU of a window that draws it, else by the CPU.
-
-        Parameters
-        ----------
-        region, sampling
-            Data coordinates; as in `pvfiblets.query.selection.passing.region_flags`, which gives the same answer.
-
-        Returns
-        -------
-        numpy.ndarray
-            (n_streamlines,) uint8.
-        """
+        """Return how each streamline lies to a region, by the GPU of a window that draws it, else by the CPU."""
         for context in contexts_with(self):
             slot = context.slots[self._address]
             current = slot.versions.get("drawn") is self._drawn

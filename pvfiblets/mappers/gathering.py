@@ -21,8 +21,6 @@ from pvfiblets.mappers.uniforms import colour_uniforms
 if TYPE_CHECKING:
     from pvfiblets.mappers.shader_effects import Draw
 
-__all__ = ["Sums", "paint_of"]
-
 _SHOULDER = np.array([-1.0, 1.0, 1.0]) / np.sqrt(3.0)
 """Direction of light in view coordinates (``shaders/resolve/line_light.glsl``)."""
 
@@ -49,34 +47,17 @@ def paint_of(draw: Draw, *, lit: bool, opacity: float | None = None) -> Paint:
 
 
 class Sums:
-    """An effect's state in one window: the engine that has sums, or empty textures.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Of the window.
-
-    Attributes
-    ----------
-    held : Gathered or None
-        Of the last draw.
-    most : float
-        Lines in its fullest pixel, where an effect asked for that.
-    known : bool
-        Whether one has.
-    paint : Paint or None
-        Of the last draw.
-    """
+    """An effect's state in one window: the engine that has sums, or empty textures."""
 
     def __init__(self, ctx: Any) -> None:
-        self._ctx = ctx
+        self._ctx = ctx  # of the window
         self._engine: Any = None
         self._outside: OutsideDepth | None = None
         self._blank = BlankArrays(ctx, "none")
-        self.held: Gathered | None = None
-        self.most = 1.0
-        self.known = False
-        self.paint: Paint | None = None
+        self.held: Gathered | None = None  # of the last draw
+        self.most = 1.0  # lines in its fullest pixel, where an effect asked for that
+        self.known = False  # whether one has
+        self.paint: Paint | None = None  # of the last draw
 
     def textures(self, draw: Draw, paint: Paint | None, *, sliced: bool = False) -> dict[str, Any]:
         """Return textures by the names of their samplers."""

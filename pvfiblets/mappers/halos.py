@@ -68,20 +68,9 @@ def halo_renderer(ctx: Any, drawn: Any, **options: Any) -> Any:
 
 @dataclass(frozen=True)
 class Strips(ShaderEffect):
-    """A `pvfiblets.mappers.shader_effects.MapperEffect` that colours the halos in the G-buffer.
+    """A `pvfiblets.mappers.shader_effects.MapperEffect` that colours the halos in the G-buffer."""
 
-    Parameters
-    ----------
-    color : tuple of 3 floats, optional
-        RGB between 0 and 1; None for the renderer's background, which may be a gradient.
-
-    Raises
-    ------
-    ValueError
-        If the colour is none.
-    """
-
-    color: Colour | None = WHITE
+    color: Colour | None = WHITE  # RGB between 0 and 1; None for the renderer's background, which may be a gradient
     features = frozenset({"strip"})
 
     def __post_init__(self) -> None:
@@ -168,13 +157,7 @@ class HaloMapper(FilteredMapper[HaloOptions]):
         return drawn
 
     def set_drawn(self, drawn: Drawn, look: HaloStyle | None = None) -> None:
-        """Draw something else from the next frame on, and differently where a look comes with it.
-
-        Raises
-        ------
-        ValueError
-            The colouring has values for another number of lines.
-        """
+        """Draw something else from the next frame on, and differently where a look comes with it."""
         before = self._look
         self._look = before if look is None else look
         try:
@@ -211,22 +194,11 @@ class HaloMapper(FilteredMapper[HaloOptions]):
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
     ) -> tuple[int, float] | int | None:
-        """Return the line or point nearest to a pixel of the last frame.
+        """Return the line and the position along it, or the point, nearest to a pixel of the last frame; None for none.
 
-        Parameters
-        ----------
-        x, y : float
-            Pixel of the window, from its lower left corner, as VTK's events give it.
-        renderer : vtkRenderer, optional
-            Which renderer's picture to look into; by default the one that was drawn last.
-        tolerance : int, default 2
-            Largest distance in pixels. Halos occlude objects behind them, and are never picked.
-
-        Returns
-        -------
-        tuple of int and float, int, or None
-            Of lines: the line, and the place along it: the index of the point before plus the fraction of the segment.
-            Of points: the point. None where there is none. Other actors in front are not looked at.
+        x and y count from the window's lower left corner. The position is the index of the point before plus the
+        fraction of the segment. Other actors in front are not looked at. Halos occlude objects behind them, and are
+        never picked.
         """
         found = nearest_pixel(self, (x, y), ("owner", "ids", "position"), renderer=renderer, tolerance=tolerance)
         if found is None:

@@ -13,8 +13,6 @@ import numpy.typing as npt
 from pvfiblets.mappers.shader_effects import ShaderEffect
 from pvfiblets.mappers.windows import MAX_ROW
 
-__all__ = ["Highlight"]
-
 
 class _Bits:
     """The texture of one window."""
@@ -60,28 +58,12 @@ class Highlight(ShaderEffect):
     """Selected streamlines in a colour of their own, all others faded.
 
     It costs a bit per streamline, 1 MB for 8 million, which is all that another selection writes.
-
-    Parameters
-    ----------
-    selected : numpy.ndarray
-        ``(n_streamlines,)`` bool; not to be changed afterwards.
-    color : sequence of 3 floats, optional
-        RGB of those selected; their own colours by default.
-    dim : float
-        How much of the others' colour gives way, 0 to 1.
-    faded : sequence of 3 floats, optional
-        RGB towards which the others fade; the renderer's background by default.
-
-    Raises
-    ------
-    ValueError
-        If the mask is not a row of bool, or ``dim`` is not between 0 and 1.
     """
 
-    selected: npt.NDArray[np.bool_]
-    color: tuple[float, ...] | None = None
-    dim: float = 0.8
-    faded: tuple[float, ...] | None = None
+    selected: npt.NDArray[np.bool_]  # `(n_streamlines,)` bool; not to be changed afterwards
+    color: tuple[float, ...] | None = None  # RGB of those selected; their own colours by default
+    dim: float = 0.8  # how much of the others' colour gives way, 0 to 1
+    faded: tuple[float, ...] | None = None  # RGB towards which the others fade; the renderer's background by default
     features = frozenset({"highlight"})
 
     def __post_init__(self) -> None:

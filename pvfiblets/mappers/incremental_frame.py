@@ -15,15 +15,11 @@ from pvfiblets.mappers.antialias_windows import picture_of
 from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.mappers.scene import actors_in, items_of
 
-__all__ = ["draw_in_pieces"]
-
 
 def draw_in_pieces(window: Any, *, refining: bool = False) -> Iterator[None]:
-    """Draw the fiblets of a window's next frame, and yield after each piece.
-
-    Scenes that cannot be drawn in pieces, as on a GPU, are skipped, and so are frames that are not ordinary: an
-    enlarged one, or one with a render pass.
-    """
+    """Draw the fiblets of a window's next frame, and yield after each piece."""
+    # Scenes that cannot be drawn in pieces, as on a GPU, are skipped, and so are frames that are not ordinary: an
+    # enlarged one, or one with a render pass.
     if tuple(window.GetTileScale()) != (1, 1) or window.GetStereoRender():
         return
     drawn: set[str] = set()

@@ -17,35 +17,20 @@ from pvfiblets.mappers.scene import in_motion, items_of
 from pvfiblets.mappers.scene_state import scene_state
 from pvfiblets.mappers.windows import weak
 
-__all__ = ["KeptViews"]
-
 _LETTERS = ("GetTextProperty", "GetTitleTextProperty", "GetLabelTextProperty", "GetAnnotationTextProperty")
 _PARTS = (*_LETTERS, "GetLookupTable", "GetMapper", "GetInput", "GetProperty")
 
 
 class KeptViews:
-    """Has the views of a window drawn only in frames in which they have changed.
-
-    Parameters
-    ----------
-    window : vtkRenderWindow
-    renderers : iterable of vtkRenderer
-        Views that do not overlap. Others of the window are drawn in every frame.
-    prepare : callable
-        Called before each frame, to update views before their states are compared.
-
-    Attributes
-    ----------
-    frames : dict of str to int
-        How often each view was drawn, by the address of its renderer.
-    """
+    """Has the views of a window drawn only in frames in which they have changed."""
 
     def __init__(self, window: Any, renderers: Iterable[Any], prepare: Callable[[], None]) -> None:
-        self._renderers = list(renderers)
-        self._prepare = prepare
+        self._renderers = list(renderers)  # views that do not overlap. Others of the window are drawn in every frame.
+        self._prepare = prepare  # called before each frame, to update views before their states are compared
         self._shown: dict[str, tuple[Hashable, bool]] = {}
         self._layout: Hashable = None
         self._left: list[Any] = []
+        # how often each view was drawn, by the address of its renderer
         self.frames = {one.GetAddressAsString(""): 0 for one in self._renderers}
         self._window: Any = weak(window)
         reference = weakref.ref(self)

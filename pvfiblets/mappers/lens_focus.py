@@ -16,51 +16,29 @@ from pvfiblets.mappers.scene import in_motion, pixel_scale, samples_per_pixel, t
 
 __all__ = ["FOLLOWED", "DepthOfField", "Focusing", "lens_of"]
 
-FOLLOWED = ("cursor", "center")
-"""Places in the picture whose depth may be the one in focus."""
+FOLLOWED = ("cursor", "center")  # places in the picture whose depth may be the one in focus
 
-APERTURE = 0.06
-"""Default diameter of the lens, as a share of the visible height at the distance in focus."""
+APERTURE = 0.06  # default diameter of the lens, as a share of the visible height at the distance in focus
 
-NEAR_CURSOR = 2
-"""Pixels around the mouse in which things are looked for: lines are thin."""
+NEAR_CURSOR = 2  # pixels around the mouse in which things are looked for: lines are thin
 
-SETTLED = 1e-3
-"""Relative error at which a moving focus counts as arrived."""
+SETTLED = 1e-3  # relative error at which a moving focus counts as arrived
 
-LONGEST = 0.1
-"""Seconds that count as passed at most: a focus that has rested starts slowly, too."""
+LONGEST = 0.1  # seconds that count as passed at most: a focus that has rested starts slowly, too
 
 
 @dataclass(frozen=True)
 class DepthOfField:
-    """The focus of a lens, and the blur around it.
+    """The focus of a lens, and the blur around it."""
 
-    Parameters
-    ----------
-    focal_distance : float, None or str
-        mm from the viewer's plane; None for the camera's focal point; ``'cursor'`` for the nearest surface under the
-        mouse, or ``'center'`` for the nearest in the middle, or the last one found.
-    aperture : float, optional
-        mm: diameter of the lens. `APERTURE` of the height that is seen at the distance in focus by default.
-    darkening : float
-        0 to 1: share of the light that things with the greatest blur lose.
-    max_blur : float
-        Pixels of the window, 1 to `WIDEST`: the greatest radius of a blurred point.
-    smooth : float
-        Seconds in which a focus that follows comes 63 % of the way; 0 for at once.
-
-    Raises
-    ------
-    ValueError
-        A value has no meaning.
-    """
-
+    # mm from the viewer's plane; None for the camera's focal point; `'cursor'` for the nearest surface under the mouse,
+    # or `'center'` for the nearest in the middle, or the last one found
     focal_distance: float | str | None = None
+    # mm: diameter of the lens. `APERTURE` of the height that is seen at the distance in focus by default.
     aperture: float | None = None
-    darkening: float = 0.0
-    max_blur: float = 16.0
-    smooth: float = 0.0
+    darkening: float = 0.0  # 0 to 1: share of the light that things with the greatest blur lose
+    max_blur: float = 16.0  # pixels of the window, 1 to `WIDEST`: the greatest radius of a blurred point
+    smooth: float = 0.0  # seconds in which a focus that follows comes 63 % of the way; 0 for at once
 
     def __post_init__(self) -> None:
         focal = self.focal_distance
@@ -80,19 +58,11 @@ class DepthOfField:
 
 
 class Focusing:
-    """The lens of one renderer: where its focus is, and on its way to.
-
-    Attributes
-    ----------
-    distance : float or None
-        mm, in focus in the last picture.
-    clock : callable
-        Tells seconds.
-    """
+    """The lens of one renderer: where its focus is, and on its way to."""
 
     def __init__(self) -> None:
-        self.distance: float | None = None
-        self.clock: Callable[[], float] = time.monotonic
+        self.distance: float | None = None  # mm, in focus in the last picture
+        self.clock: Callable[[], float] = time.monotonic  # tells seconds
         self._aim: float | None = None
         self._moved = 0.0
 
@@ -155,10 +125,8 @@ def lens_of(renderer: Any, size: tuple[int, int]) -> Projection:
 def _seen_at(
     place: str, renderer: Any, effects: PictureEffects, lens: Projection, samples: float, *, wait: bool
 ) -> float | None:
-    """Return the distance (mm) of the nearest surface at a pixel; None over the background, and in tiles.
-
-    Without waiting for the GPU, it is that of a picture before; None if nothing new is known of any.
-    """
+    """Return the distance (mm) of the nearest surface at a pixel; None over the background, and in tiles."""
+    # Without waiting for the GPU, it is that of a picture before; None if nothing new is known of any.
     window = renderer.GetRenderWindow()
     if tuple(window.GetTileScale()) != (1, 1):
         return None

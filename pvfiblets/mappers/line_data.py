@@ -28,32 +28,19 @@ COLOURS, RADIUS, STREAMLINE = "colours", "radius", "streamline"
 SIDES = 12
 """Flat sides of a tube around a line: its surface lies inside of the round one by 3.4 % of the radius at most."""
 
-STEPS = 8
-"""Straight pieces of a segment of spline tubes."""
+STEPS = 8  # straight pieces of a segment of spline tubes
 
 _HALVINGS = 30
 
 
 @dataclass(frozen=True, eq=False)
 class LineData:
-    """Lines with rows of data for each point.
+    """Lines with rows of data for each point."""
 
-    Parameters
-    ----------
-    points : numpy.ndarray
-        ``(n, 3)`` floats, mm of the data.
-    offsets : numpy.ndarray
-        ``(k + 1,)`` int64: line ``i`` is ``points[offsets[i]:offsets[i + 1]]``.
-    ids : numpy.ndarray
-        ``(k,)`` int64: the streamline of each line.
-    columns : mapping of str to numpy.ndarray
-        Arrays with a row for each point.
-    """
-
-    points: npt.NDArray[Any]
-    offsets: Ints
-    ids: Ints
-    columns: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+    points: npt.NDArray[Any]  # `(n, 3)` floats, mm of the data
+    offsets: Ints  # `(k + 1,)` int64: line `i` is `points[offsets[i]:offsets[i + 1]]`
+    ids: Ints  # `(k,)` int64: the streamline of each line
+    columns: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)  # arrays with a row for each point
 
     @property
     def owners(self) -> Ints:
@@ -117,10 +104,8 @@ class LineData:
         return np.asarray(np.where(inside, low, high))
 
     def _runs(self, before: Ints, share: Floats, begins: Flags) -> LineData:
-        """Return lines through places, a share of the way behind points, a new one where one begins.
-
-        What is left of a line as a lone point goes.
-        """
+        """Return lines through places, a share of the way behind points, a new one where one begins."""
+        # What is left of a line as a lone point goes.
         starts = np.flatnonzero(begins)
         counts = np.diff(starts, append=len(before))
         owners = self.owners[before[starts]]

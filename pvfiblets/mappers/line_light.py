@@ -6,8 +6,6 @@ from typing import Any
 
 from pvfiblets.mappers.shader_effects import Draw, ShaderEffect
 
-__all__ = ["LegendColours", "LineLight"]
-
 
 class LineLight(ShaderEffect):
     """Illuminated lines (Zöckler 1996, Mallo 2005) with a floor: light shows shape and leaves colours true."""

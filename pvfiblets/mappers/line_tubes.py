@@ -12,8 +12,6 @@ import numpy.typing as npt
 
 from pvfiblets.mappers.shader_effects import Draw, MapperEffect, ShaderEffect
 
-__all__ = ["SurfaceNormals", "TubeShading", "Tubes", "normals_to_view", "thickened", "thickness_of"]
-
 
 def thickness_of(effects: Iterable[MapperEffect]) -> float:
     """Return the radius (mm) of the tubes that effects want; 0 for lines."""
@@ -36,12 +34,7 @@ def normals_to_view(directions: npt.NDArray[np.float64]) -> npt.NDArray[np.float
 
 
 class _Blank:
-    """A texel that says of every pixel that it lies in the middle of its line.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    """
+    """A texel that says of every pixel that it lies in the middle of its line."""
 
     def __init__(self, ctx: Any) -> None:
         self._ctx = ctx
@@ -115,19 +108,9 @@ class Tubes(SurfaceNormals):
     Each pixel shows the point at which its ray meets the tube, to float32's last digits: tubes cut into each other and
     into VTK's meshes, and lights, ambient occlusion and selection take them for surfaces. Those thinner than a pixel
     are drawn a pixel wide. ``line_width`` is not looked at. It costs four bytes for each pixel.
-
-    Parameters
-    ----------
-    radius : float
-        Data mm; a user matrix that scales the actor scales its tubes.
-
-    Raises
-    ------
-    ValueError
-        If the radius is not positive and finite.
     """
 
-    radius: float
+    radius: float  # data mm; a user matrix that scales the actor scales its tubes
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.radius) and self.radius > 0.0):

@@ -11,8 +11,7 @@ from typing import Any
 
 __all__ = ["Overlay"]
 
-LAST = ("vtkSSAOPass", "vtkEDLShading")
-"""Passes that leave the depth of their result in VTK's framebuffer."""
+LAST = ("vtkSSAOPass", "vtkEDLShading")  # passes that leave the depth of their result in VTK's framebuffer
 
 
 class Overlay:

@@ -19,87 +19,45 @@ from pvfiblets.mappers.shifted_cameras import with_exact_depths
 from pvfiblets.mappers.windows import WindowContext, contexts_with
 
 EMPTY = 0xFFFFFFFF
-DEPTH_ERROR = 3e-7
-"""Window depth: as much as a depth buffer of 24 bits and the shader's float32 round."""
+DEPTH_ERROR = 3e-7  # window depth: as much as a depth buffer of 24 bits and the shader's float32 round
 
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """The last picture of one renderer.
+    """The last picture of one renderer."""
 
-    Attributes
-    ----------
-    renderer : vtkWeakReference
-        The vtkRenderer.
-    viewport : tuple of 4 ints
-        Viewport in pixels of the framebuffer, which supersampling makes larger than the window's.
-    view, style : Any
-        As given to the engine.
-    """
-
-    renderer: Any
+    renderer: Any  # the vtkRenderer
+    # viewport in pixels of the framebuffer, which supersampling makes larger than the window's
     viewport: tuple[int, int, int, int]
-    view: Any
+    view: Any  # as given to the engine
     style: Any
 
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """A mapper whose picture is looked into.
-
-    Attributes
-    ----------
-    mapper : FibletMapper
-    ids : numpy.ndarray or None
-        Which streamlines its own are, where it draws some of another mapper's.
-    starts : numpy.ndarray or None
-        Where it draws spline tubes: the place along its streamline at which each segment begins.
-    """
+    """A mapper whose picture is looked into."""
 
     mapper: Any
-    ids: npt.NDArray[np.int64] | None = None
+    ids: npt.NDArray[np.int64] | None = None  # which streamlines its own are, where it draws some of another mapper's
+    # where it draws spline tubes: the place along its streamline at which each segment begins
     starts: npt.NDArray[np.int64] | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """Pixels of an area in which streamlines are seen.
+    """Pixels of an area in which streamlines are seen."""
 
-    Attributes
-    ----------
-    ids : numpy.ndarray
-        ``(n,)`` int64 streamlines.
-    places : numpy.ndarray
-        ``(n,)`` float64: index of the point before, plus the fraction of the segment.
-    depths : numpy.ndarray
-        ``(n,)`` float64 window depths.
-    pixels : numpy.ndarray
-        ``(n, 2)`` float64 window pixels; fractions where the picture is supersampled.
-    distances : numpy.ndarray
-        ``(n,)`` float64 window pixels from the area; 0 within.
-    values : numpy.ndarray
-        ``(n,)`` float64: the per-point value that is drawn; NaN where none is.
-    """
-
-    ids: npt.NDArray[np.int64]
-    places: npt.NDArray[np.float64]
-    depths: npt.NDArray[np.float64]
-    pixels: npt.NDArray[np.float64]
-    distances: npt.NDArray[np.float64]
-    values: npt.NDArray[np.float64]
+    ids: npt.NDArray[np.int64]  # `(n,)` int64 streamlines
+    places: npt.NDArray[np.float64]  # `(n,)` float64: index of the point before, plus the fraction of the segment
+    depths: npt.NDArray[np.float64]  # `(n,)` float64 window depths
+    pixels: npt.NDArray[np.float64]  # `(n, 2)` float64 window pixels; fractions where the picture is supersampled
+    distances: npt.NDArray[np.float64]  # `(n,)` float64 window pixels from the area; 0 within
+    values: npt.NDArray[np.float64]  # `(n,)` float64: the per-point value that is drawn; NaN where none is
 
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """A mapper's last picture for a renderer.
-
-    Attributes
-    ----------
-    context : WindowContext
-    slot : Slot
-    drawn : Drawn
-    renderer : vtkRenderer
-    """
+    """A mapper's last picture for a renderer."""
 
     context: WindowContext
     slot: Any
@@ -146,33 +104,19 @@ def shown_by(mapper: Any, renderer: Any = None) -> Shown | None:
 
 @dataclass(frozen=True, eq=False)
 class PixelHit:
-    """The G-buffer's contents at the pixel nearest to a place.
+    """The G-buffer's contents at the pixel nearest to a place."""
 
-    Attributes
-    ----------
-    shown : Shown
-        The picture.
-    pixel : tuple of 2 ints
-        Column and row in the viewport.
-    key : int
-        Its depth.
-    texels : dict
-        Components of the textures that were read, by their names.
-    """
-
-    shown: Shown
-    pixel: tuple[int, int]
-    key: int
-    texels: dict[str, npt.NDArray[Any]]
+    shown: Shown  # the picture
+    pixel: tuple[int, int]  # column and row in the viewport
+    key: int  # its depth
+    texels: dict[str, npt.NDArray[Any]]  # components of the textures that were read, by their names
 
 
 def nearest_pixel(
     mapper: Any, place: tuple[float, float], read: Sequence[str], *, renderer: Any = None, tolerance: int = 0
 ) -> PixelHit | None:
-    """Return the pixel nearest to a place that shows something.
-
-    Of several as near the one in front is taken. The G-buffer is drawn again if it shows another view by now.
-    """
+    """Return the pixel nearest to a place that shows something."""
+    # Of several as near the one in front is taken. The G-buffer is drawn again if it shows another view by now.
     shown = shown_by(mapper, renderer)
     if shown is None or tolerance < 0:
         return None
@@ -201,14 +145,10 @@ def nearest_pixel(
 def pick_area(
     layers: Sequence[Layer], polygon: npt.ArrayLike, *, renderer: Any = None, tolerance: float = 0.0
 ) -> Hits | None:
-    """Return the visible objects in an area of the window, pixel by pixel.
-
-    Notes
-    -----
-    Pixels in which something else is nearer, by VTK's depth of the last frame, are left out: opaque actors do hide
-    streamlines. What is translucent leaves no depth and hides nothing. Under supersampling a pixel of the window
-    counts as a whole.
-    """
+    """Return the visible objects in an area of the window, pixel by pixel."""
+    # Pixels in which something else is nearer, by VTK's depth of the last frame, are left out: opaque actors do hide
+    # streamlines. What is translucent leaves no depth and hides nothing. Under supersampling a pixel of the window
+    # counts as a whole.
     from pvfiblets.query.selection.screen import area_distances
 
     pictures = [(shown_by(layer.mapper, renderer), layer) for layer in layers]

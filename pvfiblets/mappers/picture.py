@@ -44,8 +44,7 @@ __all__ = ["DepthOfField", "Picture"]
 _EVENTS = ("StartEvent", "EndEvent", "ActiveCameraEvent")
 
 _COVERAGE = "coverage"
-ANTIALIAS = ("off", _COVERAGE)
-"""Methods of smoothing edges of lines."""
+ANTIALIAS = ("off", _COVERAGE)  # methods of smoothing edges of lines
 
 
 @dataclass(slots=True)
@@ -61,21 +60,8 @@ class _Job:
 class Picture:
     """Effects on everything that a renderer draws.
 
-    Parameters
-    ----------
-    renderer : vtkRenderer
-
-    Notes
-    -----
     An exception while drawing cannot pass through VTK: it is stored, the picture stays as it was drawn, and
     `raise_pending` raises it.
-
-    Attributes
-    ----------
-    drawn : callable or None
-        Called after each frame of a picture that is refined.
-    paced : callable
-        Says whether somebody asks for more frames of the picture while it rests.
     """
 
     def __init__(self, renderer: vtkRenderer) -> None:
@@ -94,7 +80,8 @@ class Picture:
         self._error: BaseException | None = None
         self._untextured = weak(None)  # the render pass that does not draw into textures
         self.focusing = Focusing()
-        self.drawn: Callable[[], None] | None = None
+        self.drawn: Callable[[], None] | None = None  # called after each frame of a picture that is refined
+        # says whether somebody asks for more frames of the picture while it rests
         self.paced: Callable[[], bool] = lambda: False
         self._job: _Job | None = None
         self._lacks_memory = False
@@ -154,10 +141,8 @@ class Picture:
         return self._refinement.taken if job is None else int(job.share * self._refinement.samples)
 
     def draw_part(self) -> bool:
-        """Draw a part of all samples at once, if that can be done; return whether there are more parts.
-
-        Called between frames of a picture that is unfinished: the next frame shows what all parts together are.
-        """
+        """Draw a part of all samples at once, if that can be done; return whether there are more parts."""
+        # Called between frames of a picture that is unfinished: the next frame shows what all parts together are.
         renderer, refinement = self.renderer, self._refinement
         assert refinement is not None
         state = self._state(renderer)

@@ -15,8 +15,6 @@ from pvfiblets.engine.effects.picture_passes import Attachment
 from pvfiblets.engine.gl.moderngl_extras import GLExtras
 from pvfiblets.mappers.windows import WindowContext
 
-__all__ = ["COLOUR", "DEPTH", "Painted", "PictureProp", "attachment"]
-
 COLOUR, DEPTH = 0x8CE0, 0x8D00
 _DRAW_FRAMEBUFFER, _TYPE, _NAME, _COMPONENTS = 0x8CA9, 0x8CD0, 0x8CD1, 0x8211
 _TEXTURE, _FLOAT = 0x1702, 0x1406

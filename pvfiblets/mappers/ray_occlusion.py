@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from pvfiblets.engine.volumes.ray_occlusion import RayOcclusionPass
     from pvfiblets.mappers.shader_effects import Draw
 
-__all__ = ["RayOcclusion"]
-
 _WHAT = "of ray occlusion"
 
 
@@ -29,33 +27,16 @@ class RayOcclusion(ShaderEffect):
     box of the volume hold for them, and regions as far as the picture shows where they end; other things in the scene,
     and the camera's near plane, do not.
 
-    Parameters
-    ----------
-    samples : int, default 32
-        Rays of each pixel, 1 to 2048: the error falls faster than the inverse of their number's square root.
-    radius : float, optional
-        mm: farther geometry does not count. By default a 20th of the diagonal of the data's bounds.
-    strength : float, default 1.0
-        0 to 1.
-    seed : int, default 0
-        Of the directions: the same picture with the same seed is the same to the last bit.
-    smooth : bool, default True
-        Take the mean over pixels that show the same piece of surface: the fewer the rays, the more it errs less.
-
-    Raises
-    ------
-    ValueError
-        A number is not one of these.
-
-    Notes
-    -----
     Source: Lesar, "Real-time ray casting of volumetric data" (2015), section III.G, equation 10.
     """
 
+    # rays of each pixel, 1 to 2048: the error falls faster than the inverse of their number's square root
     samples: int = 32
+    # mm: farther geometry does not count. By default a 20th of the diagonal of the data's bounds.
     radius: float | None = None
-    strength: float = 1.0
-    seed: int = 0
+    strength: float = 1.0  # 0 to 1
+    seed: int = 0  # of the directions: the same picture with the same seed is the same to the last bit
+    # take the mean over pixels that show the same piece of surface: the fewer the rays, the more it errs less
     smooth: bool = True
     features: ClassVar[frozenset[str]] = frozenset({"ray_occlusion"})
 

@@ -28,8 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["MOST_POINTS", "LineReading", "readable", "reading_of"]
 
-MOST_POINTS = 2_000_000
-"""Most points for exporters and pickers: some 60 MB, or 100 MB as a .gltf or .obj file."""
+MOST_POINTS = 2_000_000  # most points for exporters and pickers: some 60 MB, or 100 MB as a .gltf or .obj file
 
 _CELLS = 1  # vtkDataObject.FIELD_ASSOCIATION_CELLS; 0 are points
 
@@ -37,8 +36,7 @@ _CELLS = 1  # vtkDataObject.FIELD_ASSOCIATION_CELLS; 0 are points
 class LineReading:
     """Real lines as VTK's data of one mapper, which is not kept alive, for a while."""
 
-    purpose = ""
-    """VTK's purpose of drawing the lines: ``"selection"``, ``"export"``, or nothing."""
+    purpose = ""  # VTK's purpose of drawing the lines: `"selection"`, `"export"`, or nothing
 
     def __init__(self, mapper: EngineMapper[Any], connection: Connection, link: ActorLink) -> None:
         self._weak = weak(mapper)
@@ -77,12 +75,10 @@ class LineReading:
             self._link.modified()
 
     def data(self, *, colours: bool = False, segments: bool = False, budget: int | None = MOST_POINTS) -> vtkPolyData:
-        """Return the lines that are shown, made anew only when something else is shown.
-
-        ``colours``: with RGBA as active scalars of the points. ``segments``: a cell for each segment, not each line.
-        Streamlines are left out evenly beyond ``budget`` points; None is without limit. Cell data ``'streamline'`` are
-        the numbers of streamlines, tubes or points.
-        """
+        """Return the lines that are shown, made anew only when something else is shown."""
+        # `colours`: with RGBA as active scalars of the points. `segments`: a cell for each segment, not each line.
+        # Streamlines are left out evenly beyond `budget` points; None is without limit. Cell data `'streamline'` are
+        # the numbers of streamlines, tubes or points.
         mapper, count = self.mapper, self.points
         if count is None:
             return vtkPolyData()
@@ -153,10 +149,8 @@ def reading_of(mapper: Any) -> LineReading | None:
 
 
 def _clear_errors(mapper: Any, selector: Any) -> None:
-    """Drop, after a selection, the error of OpenGL that VTK leaves when its data become lines after triangles.
-
-    It binds a buffer that it has deleted (9.7, mappers of its own too); the next caller would see the error.
-    """
+    """Drop, after a selection, the error of OpenGL that VTK leaves when its data become lines after triangles."""
+    # It binds a buffer that it has deleted (9.7, mappers of its own too); the next caller would see the error.
     follower = weak(mapper)
 
     def ended(ended_selector: Any, _event: str) -> None:

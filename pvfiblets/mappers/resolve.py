@@ -82,24 +82,12 @@ _DISTANCE_OF_FIBLET = "-vertexVC.z"
 
 @dataclass(frozen=True)
 class Replacement:
-    """One replacement for a ``vtkShaderProperty``.
+    """One replacement for a ``vtkShaderProperty``."""
 
-    Attributes
-    ----------
-    stage : str
-        ``'vertex'`` or ``'fragment'``.
-    original : str
-        Text to be replaced.
-    first : bool
-        Before VTK makes its own replacements, or after.
-    text : str
-        What takes its place.
-    """
-
-    stage: str
-    original: str
-    first: bool
-    text: str
+    stage: str  # `'vertex'` or `'fragment'`
+    original: str  # text to be replaced
+    first: bool  # before VTK makes its own replacements, or after
+    text: str  # what takes its place
 
 
 # VTK computes the highlight of every light, a power each, also where specular is 0.

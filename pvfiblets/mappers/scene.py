@@ -26,8 +26,7 @@ streamed: dict[str, WeakSet[Any]] = {}
 """Engines that have parts of their sets at a time (`pvfiblets.mappers.streaming`), by the address of their
 vtkRenderer."""
 
-USUAL_DPI = 72
-"""Default dots per inch of a vtkRenderWindow."""
+USUAL_DPI = 72  # default dots per inch of a vtkRenderWindow
 
 # 1 - window depth = w stands in the third place: NDC depth is 2 * depth - 1 = 1 - 2 * w.
 _FROM_COMPLEMENT = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, -2.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
@@ -35,24 +34,12 @@ _FROM_COMPLEMENT = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One draw of one actor: viewport and matrices, all float64, column vectors.
+    """One draw of one actor: viewport and matrices, all float64, column vectors."""
 
-    Attributes
-    ----------
-    viewport : tuple of 4 ints
-        x, y, width, height in pixels of the bound framebuffer.
-    model : numpy.ndarray
-        (4, 4), data mm to world coordinates: the actor.
-    view : numpy.ndarray
-        (4, 4), world to view coordinates: the camera.
-    projection : numpy.ndarray
-        (4, 4), view to clip coordinates.
-    """
-
-    viewport: tuple[int, int, int, int]
-    model: Matrix
-    view: Matrix
-    projection: Matrix
+    viewport: tuple[int, int, int, int]  # x, y, width, height in pixels of the bound framebuffer
+    model: Matrix  # (4, 4), data mm to world coordinates: the actor
+    view: Matrix  # (4, 4), world to view coordinates: the camera
+    projection: Matrix  # (4, 4), view to clip coordinates
 
     @cached_property
     def model_view(self) -> Matrix:
@@ -68,21 +55,17 @@ class Frame:
 
     @property
     def pixel_to_view(self) -> Matrix:
-        """(4, 4), (x, y in [-1, 1], 1 - window depth, 1) to view coordinates, homogeneous.
-
-        Scaled so that its largest entry is 1, which changes no position and keeps float32 in range.
-        """
+        """(4, 4), (x, y in [-1, 1], 1 - window depth, 1) to view coordinates, homogeneous."""
+        # Scaled so that its largest entry is 1, which changes no position and keeps float32 in range.
         inverse = np.linalg.inv(self.projection) @ _FROM_COMPLEMENT
         scaled: Matrix = inverse / np.abs(inverse).max()
         return scaled
 
     @property
     def directions_to_view(self) -> Matrix:
-        """(3, 3), tangents in data coordinates to view coordinates, scaled to keep float32 in range.
-
-        A camera whose position is its focal point, as far from the origin as both round to the same number, turns
-        nothing: all is zero. Nothing is seen by it, and the unit matrix is as good as another.
-        """
+        """(3, 3), tangents in data coordinates to view coordinates, scaled to keep float32 in range."""
+        # A camera whose position is its focal point, as far from the origin as both round to the same number, turns
+        # nothing: all is zero. Nothing is seen by it, and the unit matrix is as good as another.
         linear = self.model_view[:3, :3]
         largest = np.abs(linear).max()
         scaled: Matrix = linear / largest if largest > 0.0 else np.eye(3)
@@ -130,10 +113,8 @@ class Frame:
 
 
 def frame_of(renderer: vtkRenderer, actor: Any, viewport: tuple[int, int, int, int], camera: Any = None) -> Frame:
-    """Return viewport and matrices of an actor as a renderer draws it now, stereo eye included.
-
-    Or as it would by another camera.
-    """
+    """Return viewport and matrices of an actor as a renderer draws it now, stereo eye included."""
+    # Or as it would by another camera.
     camera = renderer.GetActiveCamera() if camera is None else camera
     model = vtkMatrix4x4()
     actor.GetModelToWorldMatrix(model)
@@ -151,12 +132,10 @@ def to_array(matrix: vtkMatrix4x4) -> Matrix:
 
 
 def pixel_scale(renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> float:
-    """Return the pixels to draw for each pixel in which users give a width.
-
-    A width is what the viewer sees in the finished picture. Users count pixels of the window, so a line takes the same
-    share of the picture whether it is drawn as it is, in an enlarged picture (``screenshot(scale=3)``), from many
-    samples, or with fewer dots per inch than usual, as its letters are. More dots per inch alone widen no line.
-    """
+    """Return the pixels to draw for each pixel in which users give a width."""
+    # A width is what the viewer sees in the finished picture. Users count pixels of the window, so a line takes the
+    # same share of the picture whether it is drawn as it is, in an enlarged picture (`screenshot(scale=3)`), from many
+    # samples, or with fewer dots per inch than usual, as its letters are. More dots per inch alone widen no line.
     window = renderer.GetRenderWindow()
     fewer_dots = min(1.0, window.GetDPI() / USUAL_DPI)
     return float(samples_per_pixel(renderer, viewport) * window.GetTileScale()[0] * fewer_dots)
@@ -193,11 +172,9 @@ def wanted_share(window: Any) -> float:
 
 
 def in_motion(renderer: vtkRenderer) -> bool:
-    """Whether the window wants pictures at the rate of interaction.
-
-    VTK's interactor styles and widgets raise that rate as they begin, and when they end they set it back and render
-    once more; so nothing has to be observed, and whatever drives an interactor is followed, on a server too.
-    """
+    """Whether the window wants pictures at the rate of interaction."""
+    # VTK's interactor styles and widgets raise that rate as they begin, and when they end they set it back and render
+    # once more; so nothing has to be observed, and whatever drives an interactor is followed, on a server too.
     window = renderer.GetRenderWindow()
     interactor = window.GetInteractor()
     still = window.GetDesiredUpdateRate() if interactor is None else interactor.GetStillUpdateRate()
@@ -229,10 +206,8 @@ def actors_in(prop: vtkProp) -> Iterator[vtkActor]:
 
 
 def others_before(renderer: vtkRenderer, actor: vtkProp) -> bool:
-    """Return whether VTK has drawn something opaque before an actor, whose depth may be looked at.
-
-    False while VTK selects, which draws an invisible frame.
-    """
+    """Return whether VTK has drawn something opaque before an actor, whose depth may be looked at."""
+    # False while VTK selects, which draws an invisible frame.
     if renderer.GetSelector() is not None:
         return False
     props = renderer.GetViewProps()

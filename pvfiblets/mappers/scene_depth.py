@@ -26,16 +26,10 @@ void main() { gl_Position = vec4(gl_VertexID % 2 * 4 - 1, gl_VertexID / 2 * 4 - 
 
 
 class OutsideDepth:
-    """Copies the depth of VTK's framebuffer into a texture of keys.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Of the window.
-    """
+    """Copies the depth of VTK's framebuffer into a texture of keys."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
+        self._ctx = ctx  # of the window
         self._gl = GLExtras(ctx)
         self._programs: dict[int, tuple[Any, Any]] = {}
         self._target: moderngl.Framebuffer | None = None
@@ -48,10 +42,8 @@ class OutsideDepth:
         return self._copy(self._attachment(_OBJECT_NAME), self._gl.get_integer("GL_SAMPLES"), viewport)
 
     def copy_of_window(self, renderer: vtkRenderer, size: tuple[int, int]) -> moderngl.Texture | None:
-        """Copy the depth of a renderer's part of its window's own framebuffer, whichever is bound.
-
-        Depth peeling draws translucent actors into other framebuffers, when all opaque ones are in that one.
-        """
+        """Copy the depth of a renderer's part of its window's own framebuffer, whichever is bound."""
+        # Depth peeling draws translucent actors into other framebuffers, when all opaque ones are in that one.
         framebuffer = renderer.GetRenderWindow().GetRenderFramebuffer()
         depth = None if framebuffer is None else framebuffer.GetDepthAttachmentAsTextureObject()
         if depth is None or renderer.GetPass() is not None or tuple(renderer.GetSize()) != tuple(size):

@@ -10,10 +10,7 @@ from collections.abc import Hashable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["scene_state", "without_multisamples"]
-
-_multisamples: dict[str, int] = {}
-"""Settings of windows that render a frame without multisampling, by address."""
+_multisamples: dict[str, int] = {}  # settings of windows that render a frame without multisampling, by address
 
 _SETTINGS = (
     "GetAmbient", "GetAutomaticLightCreation", "GetBackground", "GetBackground2", "GetBackgroundAlpha", "GetDraw",
@@ -23,8 +20,7 @@ _SETTINGS = (
     "GetUseHiddenLineRemoval", "GetUseImageBasedLighting", "GetUseOIT", "GetUseShadows", "GetUseSSAO", "GetViewport",
 )  # fmt: skip
 _PARTS = ("GetBackgroundTexture", "GetEnvironmentTexture", "GetPass", "GetRightBackgroundTexture", "GetSSAOKernelSize")
-_OVER = ("vtkActor2D", "vtkContextActor")
-"""Classes of overlays."""
+_OVER = ("vtkActor2D", "vtkContextActor")  # classes of overlays
 
 
 def scene_state(renderer: Any) -> Hashable:

@@ -23,42 +23,19 @@ AnyStyle = TypeVar("AnyStyle", bound="Style")
 
 @dataclass(frozen=True, eq=False)
 class Draw:
-    """One draw of a mapper, as its effects see it.
+    """One draw of a mapper, as its effects see it."""
 
-    Attributes
-    ----------
-    ctx : moderngl.Context
-        Of the window; current.
-    engine : Any
-        The engine's renderer.
-    buffer : Any
-        Its G-buffer, up to date.
-    frame : Frame
-        Viewport and matrices.
-    view, style : Any
-        As given to the engine.
-    renderer : vtkRenderer
-    fiblets : FibletSet
-        What is drawn.
-    actor : vtkActor
-        Of the mapper.
-    colouring : Colouring
-        Where its colours come from.
-    textures : mapping of str to Any
-        Of the colours, by the names of their samplers.
-    """
-
-    ctx: Any
-    engine: Any
-    buffer: Any
-    frame: Frame
-    view: Any
+    ctx: Any  # of the window; current
+    engine: Any  # the engine's renderer
+    buffer: Any  # its G-buffer, up to date
+    frame: Frame  # viewport and matrices
+    view: Any  # as given to the engine
     style: Any
     renderer: Any
-    fiblets: Any
-    actor: Any
-    colouring: Any = None
-    textures: Mapping[str, Any] = field(default_factory=dict)
+    fiblets: Any  # the drawn data
+    actor: Any  # of the mapper
+    colouring: Any = None  # where its colours come from
+    textures: Mapping[str, Any] = field(default_factory=dict)  # of the colours, by the names of their samplers
 
 
 class GpuResource(Protocol):
@@ -87,10 +64,8 @@ class MapperEffect(Protocol):
         ...
 
     def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:
-        """Bring textures up to date and return them by the names of their samplers. OpenGL state is free to change.
-
-        A name that is there already (``fibletDepthMap``) is replaced.
-        """
+        """Bring textures up to date and return them by the names of their samplers. OpenGL state is free to change."""
+        # A name that is there already (`fibletDepthMap`) is replaced.
         ...
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:
@@ -109,8 +84,7 @@ class ShaderEffect:
     translucent: ClassVar[bool] = False
     """Whether VTK must draw the actor in its translucent pass, whatever its opacity is."""
 
-    smooth_edges: ClassVar[bool] = True
-    """Whether the edges of the nearest lines are edges of the picture."""
+    smooth_edges: ClassVar[bool] = True  # whether the edges of the nearest lines are edges of the picture
 
     @property
     def style(self) -> Mapping[str, Any]:

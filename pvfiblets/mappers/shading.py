@@ -26,8 +26,7 @@ __all__ = ["AmbientOcclusion", "DepthCue", "Halos", "Illuminated", "Ink", "Silho
 
 Colour = tuple[float, float, float]
 
-LUMINANCE = (0.2126, 0.7152, 0.0722)
-"""Shares of red, green and blue (Rec. 709)."""
+LUMINANCE = (0.2126, 0.7152, 0.0722)  # shares of red, green and blue (Rec. 709).
 
 HALO_WIDTH, LEAST_HALO, MOST_HALO = 0.5, 1.25, 5.0
 """Default width of a halo: by the distance between lines; at least and at most so many pixels of the window."""
@@ -37,8 +36,7 @@ OCCLUSION_RADIUS, LEAST_OCCLUSION, MOST_OCCLUSION = 16.0, 8.0, 0.05
 """Default radius of occlusion: by the distance between lines; at least so many pixels, at most this share of the data's
 diagonal."""
 
-MAX_OUTLINE = 16.0
-"""Pixels of the window; an outline's cost grows with the square of its width."""
+MAX_OUTLINE = 16.0  # pixels of the window; an outline's cost grows with the square of its width
 
 
 class Illuminated(ShaderEffect):
@@ -59,14 +57,9 @@ class Illuminated(ShaderEffect):
 
 @dataclass(frozen=True)
 class Ink(ShaderEffect):
-    """One colour for all lines whatever they are coloured by, without light.
+    """One colour for all lines whatever they are coloured by, without light."""
 
-    Parameters
-    ----------
-    color : tuple of 3 floats, optional, default (0, 0, 0)
-        RGB between 0 and 1. None: black on a light background, white on a dark one.
-    """
-
+    # RGB between 0 and 1. None: black on a light background, white on a dark one.
     color: Colour | None = (0.0, 0.0, 0.0)
     features = frozenset({"ink"})
 
@@ -85,27 +78,13 @@ class Ink(ShaderEffect):
 
 @dataclass(frozen=True)
 class AmbientOcclusion(ShaderEffect):
-    """Lines and surfaces are darker where others stand over them.
+    """Lines and surfaces are darker where others stand over them."""
 
-    Parameters
-    ----------
-    radius : float, optional
-        mm: farther geometry does not count. By default 16 times the distance between lines, but at least 8 pixels,
-        and at most a 20th of the diagonal of the data's bounds.
-    samples : int, default 16
-        Pixels looked at around each, 1 to 256.
-    strength : float, default 1.0
-        0 to 1.
-
-    Raises
-    ------
-    ValueError
-        A number is not one of these.
-    """
-
+    # mm: farther geometry does not count. By default 16 times the distance between lines, but at least 8 pixels, and at
+    # most a 20th of the diagonal of the data's bounds.
     radius: float | None = None
-    samples: int = 16
-    strength: float = 1.0
+    samples: int = 16  # pixels looked at around each, 1 to 256
+    strength: float = 1.0  # 0 to 1
     features = frozenset({"ambient_occlusion"})
 
     def __post_init__(self) -> None:
@@ -152,27 +131,12 @@ class AmbientOcclusion(ShaderEffect):
 
 @dataclass(frozen=True)
 class DepthCue(ShaderEffect):
-    """Lines fade towards one colour with their distance from the viewer's plane.
+    """Lines fade towards one colour with their distance from the viewer's plane."""
 
-    Parameters
-    ----------
-    strength : float, default 0.7
-        Share of that colour at the far end, 0 to 1.
-    color : tuple of 3 floats, optional
-        RGB between 0 and 1; by default the renderer's background.
-    range : tuple of 2 floats, optional
-        Distances in mm at which fading begins and ends. By default the distances of the nearest and the farthest
-        corner of the
-        data's bounds, as the camera sees them.
-
-    Raises
-    ------
-    ValueError
-        A number is not one of these.
-    """
-
-    strength: float = 0.7
-    color: Colour | None = None
+    strength: float = 0.7  # share of that colour at the far end, 0 to 1
+    color: Colour | None = None  # RGB between 0 and 1; by default the renderer's background
+    # distances in mm at which fading begins and ends. By default the distances of the nearest and the farthest corner
+    # of the data's bounds, as the camera sees them.
     range: tuple[float, float] | None = None
     features = frozenset({"depth_cue"})
 
@@ -201,27 +165,15 @@ class Halos(ShaderEffect):
 
     Everts et al. 2009. A halo covers pixels without a line, too: it hides its background, and has a depth in the scene.
     Lines that a colour's alpha hides have their halos all the same; a mask of streamlines takes both away.
-
-    Parameters
-    ----------
-    width : float, optional
-        mm from a line's edge to its halo's, at most 24 pixels of the window. By default half the distance between lines
-        (`pvfiblets.mappers.spacing`), but from 1.25 to 5 pixels of the window in the middle of the data.
-    depth : float, optional
-        mm from the line back to the halo's edge: lines side by side whose depths differ by less leave each
-        other alone. By default 8 times the width.
-    color : tuple of 3 floats, optional
-        RGB between 0 and 1; by default the renderer's background.
-
-    Raises
-    ------
-    ValueError
-        A number is not one of these.
     """
 
+    # mm from a line's edge to its halo's, at most 24 pixels of the window. By default half the distance between lines
+    # (`pvfiblets.mappers.spacing`), but from 1.25 to 5 pixels of the window in the middle of the data.
     width: float | None = None
+    # mm from the line back to the halo's edge: lines side by side whose depths differ by less leave each other alone.
+    # By default 8 times the width.
     depth: float | None = None
-    color: Colour | None = (1.0, 1.0, 1.0)
+    color: Colour | None = (1.0, 1.0, 1.0)  # RGB between 0 and 1; by default the renderer's background
     features = frozenset({"halo"})
 
     def __post_init__(self) -> None:
@@ -264,26 +216,11 @@ class Halos(ShaderEffect):
 
 @dataclass(frozen=True, eq=False)
 class Silhouette(ShaderEffect):
-    """An outline around the pixels that show chosen streamlines.
+    """An outline around the pixels that show chosen streamlines."""
 
-    Parameters
-    ----------
-    selected : array_like
-        ``(n_streamlines,)`` bool.
-    color : tuple of 3 floats, default (1, 1, 1)
-        RGB between 0 and 1.
-    width : float, default 2.0
-        Pixels of the window, 1 to 16.
-
-    Raises
-    ------
-    ValueError
-        A number is not one of these, or, when drawing, `selected` is for another number of streamlines.
-    """
-
-    selected: npt.NDArray[np.bool_]
-    color: Colour = (1.0, 1.0, 1.0)
-    width: float = 2.0
+    selected: npt.NDArray[np.bool_]  # `(n_streamlines,)` bool
+    color: Colour = (1.0, 1.0, 1.0)  # RGB between 0 and 1
+    width: float = 2.0  # pixels of the window, 1 to 16
     features = frozenset({"silhouette"})
 
     def __post_init__(self) -> None:

@@ -10,18 +10,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-__all__ = [
-    "draws_sample",
-    "exact_wanted",
-    "is_shifted",
-    "note_depths",
-    "note_sample",
-    "shift",
-    "shifted",
-    "shifted_copy",
-    "with_exact_depths",
-]
-
 _cameras: set[str] = set()
 _renderers: set[str] = set()
 _exact: set[str] = set()

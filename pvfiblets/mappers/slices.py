@@ -19,8 +19,6 @@ from pvfiblets.mappers.shader_effects import ShaderEffect
 if TYPE_CHECKING:
     from pvfiblets.mappers.shader_effects import Draw
 
-__all__ = ["Slices"]
-
 
 @dataclass(frozen=True)
 class Slices(ShaderEffect):

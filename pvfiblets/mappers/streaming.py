@@ -14,10 +14,7 @@ from pvfiblets.mappers.antialias_windows import picture_of
 from pvfiblets.mappers.scene import in_motion, streamed
 from pvfiblets.mappers.shifted_cameras import draws_sample
 
-__all__ = ["PATIENCE", "pace"]
-
-PATIENCE = 0.25
-"""Seconds of a frame in which parts are fetched: events of mouse and keys are heard as often."""
+PATIENCE = 0.25  # seconds of a frame in which parts are fetched: events of mouse and keys are heard as often
 
 
 def pace(engine: Any, renderer: Any) -> None:

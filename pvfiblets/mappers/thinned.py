@@ -13,21 +13,15 @@ from typing import Any
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.mappers.scene import wanted_share
 
-__all__ = ["LEAST_FIBLETS", "thinned_engine"]
-
-LEAST_FIBLETS = 20_000
-"""Smaller sets are never thinned: they are fast, and each of their lines may count."""
+LEAST_FIBLETS = 20_000  # smaller sets are never thinned: they are fast, and each of their lines may count
 
 
-def thinned_engine(
-    context: Any, slot: Any, fiblets: Any, filtering: Any, make: Callable[..., Any], least: int | None = None
-) -> Any:
+def thinned_engine(context: Any, slot: Any, fiblets: Any, filtering: Any, make: Callable[..., Any]) -> Any:
     """Return the engine that draws the share of streamlines that the window requests."""
-    least = LEAST_FIBLETS if least is None else least
-    if fiblets.n_fiblets < least or hasattr(slot.renderer, "patience"):
+    if fiblets.n_fiblets < LEAST_FIBLETS or hasattr(slot.renderer, "patience"):
         return slot.renderer
     wanted = wanted_share(context.window) * slot.renderer.share
-    share = max(wanted, min(least / fiblets.n_fiblets, slot.renderer.share))
+    share = max(wanted, min(LEAST_FIBLETS / fiblets.n_fiblets, slot.renderer.share))
     if share not in slot.thinned:
         try:
             # `alike`: shares the programs of the whole set, which are compiled already.

@@ -10,23 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["Margin", "margin_of"]
-
 
 @dataclass(frozen=True)
 class Margin:
-    """Pixels around a renderer's part of a tile that belong to the same renderer's picture.
+    """Pixels around a renderer's part of a tile that belong to the same renderer's picture."""
 
-    Attributes
-    ----------
-    size : tuple of 2 ints
-        Of that part.
-    low, high : tuple of 2 ints
-        Pixels to the left of and below it, to the right of and above it.
-    """
-
-    size: tuple[int, int]
-    low: tuple[int, int]
+    size: tuple[int, int]  # of that part
+    low: tuple[int, int]  # pixels to the left of and below it, to the right of and above it
     high: tuple[int, int]
 
     @property

@@ -24,8 +24,6 @@ from pvfiblets.mappers.scene import Frame
 if TYPE_CHECKING:
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
-__all__ = ["TubeMapper", "TubeOptions", "tube_renderer"]
-
 
 @dataclass(frozen=True)
 class TubeOptions(Options):
@@ -127,35 +125,15 @@ class TubeMapper(FilteredMapper[TubeOptions]):
         return tubes
 
     def set_tubes(self, tubes: SplineTubes) -> None:
-        """Draw other tubes from the next frame on.
-
-        Raises
-        ------
-        ValueError
-            The colouring has values for another number of tubes.
-        """
+        """Draw other tubes from the next frame on, if the colouring has no values for another number of them."""
         self._put(tubes)
 
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
     ) -> tuple[int, float] | None:
-        """Return the position on the tubes nearest to a pixel of the last frame.
-
-        Parameters
-        ----------
-        x, y : float
-            Pixel of the window, from its lower left corner, as VTK's events give it.
-        renderer : vtkRenderer, optional
-            Which renderer's picture to look into; by default the one that was drawn last.
-        tolerance : int, default 2
-            How many pixels away a tube may be.
-
-        Returns
-        -------
-        tuple of int and float, or None
-            Segment and its parameter, 0 to 1, whose sphere the pixel shows. None where there is no tube. Other
-            actors in front are not looked at.
-        """
+        """Return the segment nearest to a pixel of the last frame, and its parameter, 0 to 1; None for no tube."""
+        # x and y count from the window's lower left corner. The pixel shows the sphere at that parameter. Other actors
+        # in front are not looked at.
         found = nearest_pixel(self, (x, y), ("owner", "position"), renderer=renderer, tolerance=tolerance)
         return None if found is None else (int(found.texels["owner"][0]), float(found.texels["position"][0]))
 

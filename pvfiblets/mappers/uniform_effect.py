@@ -9,26 +9,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 if TYPE_CHECKING:
     from pvfiblets.mappers.shader_effects import Draw
 
-__all__ = ["UniformEffect"]
-
 
 @dataclass(frozen=True)
 class UniformEffect:
-    """A `pvfiblets.mappers.shader_effects.MapperEffect` that sets one number of one piece.
+    """A `pvfiblets.mappers.shader_effects.MapperEffect` that sets one number of one piece."""
 
-    Parameters
-    ----------
-    piece : str
-        Name of the file in ``shaders/resolve``.
-    uniform : str
-        Name of the number there.
-    value : float
-        The number.
-    """
-
-    piece: str
-    uniform: str
-    value: float
+    piece: str  # name of the file in `shaders/resolve`
+    uniform: str  # name of the number there
+    value: float  # the number
     style: ClassVar[Mapping[str, Any]] = {}
 
     @property

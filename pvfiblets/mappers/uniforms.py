@@ -9,8 +9,6 @@ if TYPE_CHECKING:
     from pvfiblets.mappers.scene import Frame
     from pvfiblets.mappers.windows import Slot
 
-__all__ = ["colour_uniforms", "resolve_textures", "set_uniforms"]
-
 
 def resolve_textures(ctx: Any, slot: Slot, buffer: Any, colouring: Colouring) -> dict[str, Any]:
     """Return the textures of the G-buffer and of the colours by the names of their samplers."""

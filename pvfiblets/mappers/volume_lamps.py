@@ -12,8 +12,6 @@ from pvfiblets.mappers.shader_effects import ShaderEffect
 if TYPE_CHECKING:
     from pvfiblets.engine.volumes.shading import Lamp, Shading
 
-__all__ = ["OwnLight", "shading_of"]
-
 
 class OwnLight(ShaderEffect):
     """Light that is shaded already: what the actor's property reflects does not count again."""

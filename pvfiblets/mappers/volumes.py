@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from pvfiblets.volumes.interactive_quality import InteractiveQuality
     from pvfiblets.volumes.raycast_options import RaycastOptions
 
-__all__ = ["RayHit", "VolumeMapper", "volume_renderer"]
-
 _LIGHT = "light"  # what the engine has in the place of a number at every point
 
 
@@ -179,19 +177,7 @@ class VolumeMapper(CutMapper[Options]):
             self._connection.input.Modified()
 
     def show(self, casting: RaycastOptions, colouring: Colouring | None = None) -> None:
-        """Change both from the next frame on.
-
-        Parameters
-        ----------
-        casting : RaycastOptions
-        colouring : Colouring, optional
-            White when left out; of light it is left out.
-
-        Raises
-        ------
-        ValueError
-            The colours are none that the mode has.
-        """
+        """Change both from the next frame on. Without colours the volume is white; of light it has none."""
         colouring = _plain(casting) if colouring is None else colouring
         _check(casting, colouring)
         self._casting = casting
@@ -213,22 +199,8 @@ class VolumeMapper(CutMapper[Options]):
         self.show(self._casting, colouring)
 
     def pick_at(self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 0) -> RayHit | None:
-        """Return what a pixel of the picture that was drawn last shows of the volume.
-
-        Parameters
-        ----------
-        x, y : float
-            Pixel of the window, from its lower left corner, as VTK's events give it.
-        renderer : vtkRenderer, optional
-            Which renderer's picture to look into; by default the one that was drawn last.
-        tolerance : int, default 0
-            How many pixels away the volume may be.
-
-        Returns
-        -------
-        RayHit or None
-            None where nothing of the volume is. Other actors are not looked at.
-        """
+        """Return what a pixel of the picture that was drawn last shows of the volume; None for nothing."""
+        # x and y count from the window's lower left corner. Other actors are not looked at.
         found = nearest_pixel(self, (x, y), ("owner", "position"), renderer=renderer, tolerance=tolerance)
         if found is None:
             return None

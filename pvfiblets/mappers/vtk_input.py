@@ -15,21 +15,13 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from pvfiblets.mappers.windows import weak
 
-__all__ = ["VtkInput"]
-
 
 class VtkInput(VTKPythonAlgorithmBase):
-    """The filter between what a user connects and a mapper.
-
-    Parameters
-    ----------
-    mapper : EngineMapper
-        Its ``_made_of(data)`` returns what to draw and its colouring.
-    """
+    """The filter between what a user connects and a mapper."""
 
     def __init__(self, mapper: Any) -> None:
         super().__init__(nInputPorts=1, inputType="vtkDataObject", nOutputPorts=1, outputType="vtkPolyData")
-        self._mapper = weak(mapper)
+        self._mapper = weak(mapper)  # its `_made_of(data)` returns what to draw and its colouring
         self._state: Any = None
         self._failed = False
         self.executing = False

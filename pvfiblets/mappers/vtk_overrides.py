@@ -18,8 +18,6 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkCellPicker, vtkPicker, vtkP
 from pvfiblets.mappers.readable_lines import MOST_POINTS, LineReading, readable, reading_of
 from pvfiblets.mappers.scene import actors_in, items_of, to_array
 
-__all__ = ["EXPORTERS", "follow", "override"]
-
 EXPORTERS = {
     "vtkmodules.vtkIOExport": (
         "vtkGLTFExporter", "vtkIVExporter", "vtkJSONSceneExporter", "vtkOBJExporter", "vtkOOGLExporter",

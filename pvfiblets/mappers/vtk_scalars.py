@@ -31,24 +31,12 @@ Bytes = npt.NDArray[np.uint8]
 
 @dataclass(frozen=True, eq=False)
 class Paint:
-    """The colours of lines, or of an image.
+    """The colours of lines, or of an image."""
 
-    Attributes
-    ----------
-    name : str
-        Of the array.
-    numbers : numpy.ndarray or None
-        ``(n_points,)`` float64, which `table` maps.
-    table : dict
-        ``lut``, ``clim`` and the other arguments of a `Colouring` that maps numbers.
-    point_colours, cell_colours : numpy.ndarray or None
-        ``(n, 4)`` uint8 RGBA of each point, or of each cell.
-    """
-
-    name: str
-    numbers: npt.NDArray[np.float64] | None = None
-    table: Any = None
-    point_colours: Bytes | None = None
+    name: str  # of the array
+    numbers: npt.NDArray[np.float64] | None = None  # `(n_points,)` float64, which `table` maps
+    table: Any = None  # `lut`, `clim` and the other arguments of a `Colouring` that maps numbers
+    point_colours: Bytes | None = None  # `(n, 4)` uint8 RGBA of each point, or of each cell
     cell_colours: Bytes | None = None
 
     def mapped(self, source: str) -> Colouring:

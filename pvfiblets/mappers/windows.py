@@ -26,8 +26,7 @@ from pvfiblets.mappers.scene import renderers_of
 from pvfiblets.mappers.scene_depth import OutsideDepth
 
 GL_VIEWPORT = 0x0BA2
-MAX_ROW = 4096
-"""Greatest width of a texture that holds a list: below every driver's limit."""
+MAX_ROW = 4096  # greatest width of a texture that holds a list: below every driver's limit
 
 _contexts: dict[str, WindowContext] = {}
 
@@ -48,10 +47,8 @@ def gl_viewport(window: Any) -> tuple[int, int, int, int]:
 
 
 def _attach() -> Any:
-    """Return a moderngl context of its own on the current GL context.
-
-    ``moderngl.create_context`` may return one that was made for another window.
-    """
+    """Return a moderngl context of its own on the current GL context."""
+    # `moderngl.create_context` may return one that was made for another window.
     moderngl.init_context()
     ctx = moderngl.get_context()
     # It asks for properties of the default framebuffer, which a headless context lacks: an error of no
@@ -61,31 +58,17 @@ def _attach() -> Any:
 
 
 class Slot:
-    """A mapper's state in one window.
-
-    Attributes
-    ----------
-    renderer : Any
-        The engine's renderer, None until first needed.
-    textures : dict
-        Name to moderngl texture.
-    versions : dict
-        Name to the object the texture was made from.
-    drawn : dict
-        Address of a vtkRenderer to its last frame (see ``FibletMapper.pick_at``).
-    effects : dict
-        Name of an effect to its class and its GPU resources (`pvfiblets.mappers.shader_effects`).
-    thinned : dict
-        Share of the streamlines to a renderer of these, for frames of reduced detail (`pvfiblets.mappers.thinned`).
-    """
+    """A mapper's state in one window."""
 
     def __init__(self, mapper: Any) -> None:
         self.mapper = weak(mapper)
-        self.renderer: Any = None
-        self.textures: dict[str, Any] = {}
-        self.versions: dict[str, Any] = {}
-        self.drawn: dict[str, Any] = {}
+        self.renderer: Any = None  # the engine's renderer, None until first needed
+        self.textures: dict[str, Any] = {}  # name to moderngl texture
+        self.versions: dict[str, Any] = {}  # name to the object the texture was made from
+        self.drawn: dict[str, Any] = {}  # address of a vtkRenderer to its last frame (see `FibletMapper.pick_at`)
+        # name of an effect to its class and its GPU resources (`pvfiblets.mappers.shader_effects`)
         self.effects: dict[str, tuple[type, Any]] = {}
+        # share of the streamlines to a renderer of these, for frames of reduced detail (`pvfiblets.mappers.thinned`)
         self.thinned: dict[float, Any] = {}
         self._outside: OutsideDepth | None = None
 
@@ -145,16 +128,10 @@ class Slot:
 
 
 class WindowContext:
-    """GL context of a render window; make it with `context_of`.
-
-    Parameters
-    ----------
-    window : vtkOpenGLRenderWindow
-        Its context must be current.
-    """
+    """GL context of a render window; make it with `context_of`."""
 
     def __init__(self, window: Any) -> None:
-        self._window = weak(window)
+        self._window = weak(window)  # its context must be current
         self.slots: dict[str, Slot] = {}
         self.ctx: Any = None
         self._told_lost = False
@@ -184,10 +161,8 @@ class WindowContext:
         return self.window is not None and self._witness.GetHandle() != 0
 
     def tell_lost(self, renderer: Any) -> None:
-        """Warn once that VTK shows nothing translucent: where its depth peeling failed, with an error left behind.
-
-        Some drivers refuse the copy of a multi-sampled depth that peeling begins with; meshes vanish as well.
-        """
+        """Warn once that VTK shows nothing translucent: where its depth peeling failed, with an error left behind."""
+        # Some drivers refuse the copy of a multi-sampled depth that peeling begins with; meshes vanish as well.
         if self._told_lost or not renderer.GetUseDepthPeeling() or self.window.GetMultiSamples() < 2:
             return
         if self.ctx.error != "GL_NO_ERROR":
@@ -205,14 +180,12 @@ class WindowContext:
 
     @contextmanager
     def foreign(self) -> Iterator[None]:
-        """Keep VTK's record of the GL state true around GL calls that are not VTK's.
-
-        And moderngl's: whenever it has made a framebuffer, it binds the one that it remembers, and the one bound
-        when it was attached may be gone. Framebuffer 0 never is; VTK binds its own again at the end.
-
-        An error of OpenGL that VTK has left behind (peeling of depth in a multi-sampled window does) is dropped: the
-        next caller, such as after making a buffer, would take it for its own.
-        """
+        """Keep VTK's record of the GL state true around GL calls that are not VTK's."""
+        # And moderngl's: whenever it has made a framebuffer, it binds the one that it remembers, and the one bound when
+        # it was attached may be gone. Framebuffer 0 never is; VTK binds its own again at the end.
+        #
+        # An error of OpenGL that VTK has left behind (peeling of depth in a multi-sampled window does) is dropped: the
+        # next caller, such as after making a buffer, would take it for its own.
         state = self.window.GetState()
         state.Reset()
         state.Push()
@@ -226,10 +199,8 @@ class WindowContext:
             state.Pop()
 
     def texture_units(self, count: int) -> list[int]:
-        """Return units that VTK does not use at this moment, the highest first.
-
-        VTK hands out the lowest free ones. moderngl makes textures on the very last.
-        """
+        """Return units that VTK does not use at this moment, the highest first."""
+        # VTK hands out the lowest free ones. moderngl makes textures on the very last.
         manager = self.window.GetState().GetTextureUnitManager()
         last = min(manager.GetNumberOfTextureUnits(), self.ctx.max_texture_units) - 1
         units = [unit for unit in range(last - 1, -1, -1) if not manager.IsAllocated(unit)]
@@ -307,10 +278,8 @@ def _windows_of(mapper: Any) -> dict[str, Any]:
 
 
 def make_current_again(mapper: Any) -> None:
-    """Make the window current that draws a mapper whose actor is in several.
-
-    VTK has just deleted objects of another of them, and on EGL leaves that one current.
-    """
+    """Make the window current that draws a mapper whose actor is in several."""
+    # VTK has just deleted objects of another of them, and on EGL leaves that one current.
     windows = _windows_of(mapper)
     for window in windows.values() if len(windows) > 1 else ():
         if window.CheckInRenderStatus():

@@ -16,8 +16,6 @@ from pvfiblets.codec.point_values import PointValues, as_codes
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = ["fiblet_bytes"]
-
 _MEMBERS = ("pages", "rank_to_id", "anchors", "anchors_low", "decoding", "codes", "reach", "ends")
 """In this order, after values of points: a page that gets the file from its start has all that the first codes need.
 

@@ -43,22 +43,13 @@ class CameraPlace:
 
 @dataclass(frozen=True)
 class Light:
-    """A light.
+    """A light."""
 
-    Attributes
-    ----------
-    colour : tuple of 3 floats
-        RGB times intensity.
-    view, world : tuple of 3 floats, optional
-        Direction to the light, in view coordinates of one that moves with the camera, or in world coordinates.
-    positional : bool
-        Whether `world` is a place instead.
-    """
-
-    colour: Vector
+    colour: Vector  # RGB times intensity
+    # direction to the light, in view coordinates of one that moves with the camera, or in world coordinates
     view: Vector | None = None
     world: Vector | None = None
-    positional: bool = False
+    positional: bool = False  # whether `world` is a place instead
 
     def plain(self) -> dict[str, Any]:
         """Return it as JSON has it."""
@@ -68,42 +59,21 @@ class Light:
 
 @dataclass
 class PageScene:
-    """The scene of a page.
+    """The scene of a page."""
 
-    Attributes
-    ----------
-    title : str
-        Of the page.
-    background : tuple of two colours
-        At the bottom and at the top, RGB from 0 to 1.
-    camera : CameraPlace, optional
-        None: an oblique view of everything.
-    lights : list of Light
-        A headlight where there is none.
-    layers, bars : list of dict
-        As ``client/src/scene.ts`` has them; `fiblet_layer` makes one.
-    blobs : list of bytes
-        What layers name by number.
-    bounds : tuple of 6 floats
-        Of everything, world mm.
-    letters : bool
-        Whether letters say where left, right, front, back, top and bottom are.
-    antialias : bool
-        Whether edges of lines are smooth.
-    values_apart : bool
-        Whether values of points are blobs of their own, and no part of the sets: other ones are then sent alone.
-    """
-
-    title: str
+    title: str  # of the page
+    # at the bottom and at the top, RGB from 0 to 1
     background: tuple[Vector, Vector] = ((1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
-    camera: CameraPlace | None = None
-    lights: list[Light] = field(default_factory=list)
+    camera: CameraPlace | None = None  # none: an oblique view of everything
+    lights: list[Light] = field(default_factory=list)  # A headlight where there is none
+    # as `client/src/scene.ts` has them; `fiblet_layer` makes one
     layers: list[dict[str, Any]] = field(default_factory=list)
     bars: list[dict[str, Any]] = field(default_factory=list)
-    blobs: list[bytes] = field(default_factory=list)
-    bounds: Bounds = (np.inf, -np.inf, np.inf, -np.inf, np.inf, -np.inf)
-    letters: bool = False
-    antialias: bool = True
+    blobs: list[bytes] = field(default_factory=list)  # what layers name by number
+    bounds: Bounds = (np.inf, -np.inf, np.inf, -np.inf, np.inf, -np.inf)  # of everything, world mm
+    letters: bool = False  # whether letters say where left, right, front, back, top and bottom are
+    antialias: bool = True  # whether edges of lines are smooth
+    # whether values of points are blobs of their own, and no part of the sets: other ones are then sent alone
     values_apart: bool = False
 
     def add_blob(self, data: bytes | npt.NDArray[Any]) -> int:

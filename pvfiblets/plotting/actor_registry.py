@@ -81,12 +81,9 @@ class Registered(Protocol):
 
 A = TypeVar("A", bound=Registered)
 
-LETTER = 0.5
-"""Width of a letter per size of its font, about."""
-NAMES_FONT = 18
-"""Size of the font of names beside a scalar bar that VTK chooses in a small window, about."""
-NAMES_SHARE = 0.42
-"""Share of the window's width for names beside a scalar bar."""
+LETTER = 0.5  # width of a letter per size of its font, about
+NAMES_FONT = 18  # size of the font of names beside a scalar bar that VTK chooses in a small window, about
+NAMES_SHARE = 0.42  # share of the window's width for names beside a scalar bar
 
 
 CAMERA_REACH = 2.0**53
@@ -210,10 +207,8 @@ class ActorRegistry(Generic[A]):
         reset_camera: bool | None,
         render: bool,
     ) -> A:
-        """Add an actor to the plotter's active renderer as ``add_mesh`` does, and keep it.
-
-        Where an argument is refused, the actor is not left behind.
-        """
+        """Add an actor to the plotter's active renderer as ``add_mesh`` does, and keep it."""
+        # Where an argument is refused, the actor is not left behind.
         for word, text in (("name", name), ("label", label)):
             if text is not None and not isinstance(text, str):
                 raise TypeError(f"{word} is {text!r}; give a string")

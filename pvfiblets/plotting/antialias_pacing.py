@@ -10,11 +10,9 @@ from typing import Any
 
 __all__ = ["REST", "Pacer"]
 
-REST = 0.15
-"""Seconds without a frame after which a picture is at rest."""
+REST = 0.15  # seconds without a frame after which a picture is at rest
 
-PAUSE = 1
-"""Milliseconds between samples, in which events of mouse and keys are heard."""
+PAUSE = 1  # milliseconds between samples, in which events of mouse and keys are heard
 
 EARLY = 0.002  # seconds that a timer may come before its time
 
@@ -26,25 +24,13 @@ class Pacer:
     `PAUSE` after a sample. A window whose interactor must not render is a server's, such as a notebook's: there the
     running ``asyncio`` loop takes the steps, and in the end the plotter renders once more, for servers that send its
     pictures.
-
-    Parameters
-    ----------
-    plotter : pyvista.BasePlotter
-    step : callable
-        Draws a sample; says whether another one is wanted.
-    wanted : callable
-        Says whether one is, and how many have been taken.
-
-    Attributes
-    ----------
-    by_hand : bool
-        Whether somebody else calls for the samples.
     """
 
     def __init__(self, plotter: Any, step: Callable[[], bool], wanted: Callable[[], tuple[bool, int]]) -> None:
         self._plotter = weakref.proxy(plotter)
-        self._step, self._wanted = step, wanted
-        self.by_hand = False
+        # says whether one is, and how many have been taken
+        self._step, self._wanted = step, wanted  # draws a sample; says whether another one is wanted
+        self.by_hand = False  # whether somebody else calls for the samples
         self._timer: int | None = None
         self._due = 0.0
         self._tag: int | None = None

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
     from pvfiblets.plotting.settings import Argument
 
-__all__ = ["document", "plotter_method", "replace_method"]
-
 _WIDEST = 100
 
 
@@ -71,10 +69,8 @@ def replace_method(
     module: str,
     more: str = "",
 ) -> None:
-    """Put a function in the place of a method of plotters, as PyVista provides for.
-
-    ``pyvista.unregister_plotter_component(name)`` undoes it.
-    """
+    """Put a function in the place of a method of plotters, as PyVista provides for."""
+    # `pyvista.unregister_plotter_component(name)` undoes it.
     owner = next(kind for kind in pv.Plotter.__mro__ if name in vars(kind))
     original = vars(owner)[name]
 

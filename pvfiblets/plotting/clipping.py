@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from pvfiblets.mappers.engine_mapper import CutMapper
     from pvfiblets.regions import Region
 
-__all__ = ["ClippedActor", "without"]
-
 
 class ClippedActor(ColouredActor):
     """Actor that regions of space can cut."""

@@ -20,11 +20,9 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.scalars import Scalars
 
-MOST_COLOURS = 65536
-"""Entries of a look-up table."""
+MOST_COLOURS = 65536  # entries of a look-up table
 
-MOST_WORDS = 64
-"""Names of categories beside a scalar bar: of more, the bar shows the numbers, as names would not fit."""
+MOST_WORDS = 64  # names of categories beside a scalar bar: of more, the bar shows the numbers, as names would not fit
 
 
 def label_colours(count: int) -> list[Any]:
@@ -38,41 +36,19 @@ def label_colours(count: int) -> list[Any]:
 
 @dataclass
 class ColourSettings:
-    """A user's settings of an actor's colours; ``None`` means PyVista's theme or the data.
+    """A user's settings of an actor's colours; ``None`` means PyVista's theme or the data."""
 
-    Parameters
-    ----------
-    color : color-like, optional
-        One colour for all, when no scalars are chosen.
-    cmap : str or colormap or list, optional
-        As for :meth:`pyvista.Plotter.add_mesh`.
-    clim : float or (float, float), optional
-        Values of the first and the last colour; one number ``x`` means ``(-x, x)``.
-    n_colors : int, default: 256
-        Entries of the look-up table.
-    log_scale : bool, default: False
-        Spread the colours over the logarithm of the values.
-    nan_color, below_color, above_color : color-like, optional
-        For NaN, and for values outside ``clim``.
-    flip_scalars : bool, default: False
-        Reverse the colour map.
-    categories : bool, default: False
-        As many colours as there are different values, instead of ``n_colors``.
-    annotations : dict of float to str, optional
-        What the scalar bar writes beside values.
-    """
-
-    color: Any = None
-    cmap: Any = None
-    clim: Any = None
-    n_colors: int = 256
-    log_scale: bool = False
-    nan_color: Any = None
+    color: Any = None  # one colour for all, when no scalars are chosen
+    cmap: Any = None  # as for `pyvista.Plotter.add_mesh`
+    clim: Any = None  # values of the first and the last colour; one number `x` means `(-x, x)`
+    n_colors: int = 256  # entries of the look-up table
+    log_scale: bool = False  # spread the colours over the logarithm of the values
+    nan_color: Any = None  # for NaN, and for values outside `clim`
     below_color: Any = None
     above_color: Any = None
-    flip_scalars: bool = False
-    categories: bool = False
-    annotations: dict[float, str] | None = None
+    flip_scalars: bool = False  # reverse the colour map
+    categories: bool = False  # as many colours as there are different values, instead of `n_colors`
+    annotations: dict[float, str] | None = None  # what the scalar bar writes beside values
 
 
 def active_scalars(source: Any, color: Any, rgb: bool | None, *, points: bool = False) -> str | None:
@@ -136,10 +112,8 @@ def update_table(
     theme: Any,
     fiblets: FibletSet | None = None,
 ) -> None:
-    """Bring ``table`` in step with the settings; the object stays, so scalar bars follow.
-
-    ``fiblets`` are needed where there are categories, to count them.
-    """
+    """Bring ``table`` in step with the settings; the object stays, so scalar bars follow."""
+    # `fiblets` are needed where there are categories, to count them.
     count = as_count(settings.n_colors)
     low, high = limits(settings, scalars)
     labels = scalars.categories is not None

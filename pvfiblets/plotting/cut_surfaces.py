@@ -15,12 +15,9 @@ import pyvista as pv
 
 __all__ = ["cut_surface"]
 
-PIECES = 16
-"""Edges that a shape's shortest side is divided into; a ball's border is then off by a 500th of its radius."""
-LEAST = 64
-"""No edge is divided below this part of a shape's longest side, however thin it is."""
-MOST = 2_000_000
-"""Triangles; from there on none is divided further."""
+PIECES = 16  # edges that a shape's shortest side is divided into; a ball's border is then off by a 500th of its radius
+LEAST = 64  # no edge is divided below this part of a shape's longest side, however thin it is
+MOST = 2_000_000  # triangles; from there on none is divided further
 HALVINGS = 30
 
 Floats = npt.NDArray[np.float64]

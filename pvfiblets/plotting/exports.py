@@ -12,8 +12,6 @@ from typing import Any
 
 from pvfiblets.plotting.call_signature import replace_method
 
-__all__ = ["METHODS"]
-
 METHODS = ("export_gltf", "export_obj", "export_vrml")
 
 _MORE = (

@@ -56,26 +56,13 @@ class Subject(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Criterion:
-    """A range of values outside of which nothing is shown.
-
-    Attributes
-    ----------
-    name : str
-    what : Any
-        What was asked for: a name, an array, a ``Distance``.
-    values : Any
-        :class:`pvfiblets.query.measures.measures.Values`.
-    range : tuple of float
-        Both ends included.
-    keep_nan : bool
-        Whether NaN is shown.
-    """
+    """A range of values outside of which nothing is shown."""
 
     name: str
-    what: Any
-    values: Any
-    range: tuple[float, float]
-    keep_nan: bool
+    what: Any  # as given: a name, an array, a `Distance`
+    values: Any  # `pvfiblets.query.measures.measures.Values`
+    range: tuple[float, float]  # both ends included
+    keep_nan: bool  # whether NaN is shown
 
     def within(self) -> tuple[Any, float, float, bool]:
         """What :mod:`pvfiblets.query.selection.bits` asks for."""

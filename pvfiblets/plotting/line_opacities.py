@@ -9,8 +9,6 @@ import numpy as np
 from pvfiblets.plotting.fiblets.opacities import Opacities, as_transfer, check_range
 from pvfiblets.plotting.selection import SelectedActor
 
-__all__ = ["LineActor"]
-
 
 class LineActor(SelectedActor):
     """Actor of tubes or halos: its lines have opacities."""

@@ -16,55 +16,30 @@ if TYPE_CHECKING:
     from pvfiblets.query.measures.measures import Values
     from pvfiblets.streamlines import Streamlines
 
-__all__ = ["LineSubject", "Parts"]
-
 
 @dataclass(frozen=True, eq=False)
 class Parts:
-    """Lines, and the segments or points that are drawn of them.
+    """Lines, and the segments or points that are drawn of them."""
 
-    Attributes
-    ----------
-    lines : Streamlines
-        With all data that criteria may name.
-    ends : numpy.ndarray
-        ``(n, 2)`` int64: the points between which each part lies.
-    owners : numpy.ndarray
-        ``(n,)`` int64: the line of each part.
-    rows : numpy.ndarray, optional
-        ``(n_points,)`` int64: the row that each point has in a user's array, where they differ.
-    n_rows : int
-        Rows of such arrays.
-    flags : callable, optional
-        How the lines lie to regions, where they are not straight between their points.
-    measured : mapping of str to callable
-        Measures that the lines' points alone do not give.
-    """
-
-    lines: Streamlines
-    ends: np.ndarray
-    owners: np.ndarray
+    lines: Streamlines  # with all data that criteria may name
+    ends: np.ndarray  # `(n, 2)` int64: the points between which each part lies
+    owners: np.ndarray  # `(n,)` int64: the line of each part
+    # `(n_points,)` int64: the row that each point has in a user's array, where they differ
     rows: np.ndarray | None = None
-    n_rows: int = 0
-    flags: FlagsOf | None = None
+    n_rows: int = 0  # rows of such arrays
+    flags: FlagsOf | None = None  # how the lines lie to regions, where they are not straight between their points
+    # measures that the lines' points alone do not give
     measured: Mapping[str, Callable[[], Values]] = field(default_factory=dict)
 
 
 class LineSubject:
-    """A :class:`~pvfiblets.plotting.filter_state.Subject`: lines in memory.
-
-    Parameters
-    ----------
-    mapper : FilteredMapper
-        That draws them.
-    make : callable
-        Returns the `Parts`, when something is first chosen from them.
-    """
+    """A :class:`~pvfiblets.plotting.filter_state.Subject`: lines in memory."""
 
     NOUN: ClassVar[str] = "lines"
 
     def __init__(self, mapper: FilteredMapper[Any], make: Callable[[], Parts]) -> None:
-        self._mapper, self._make = mapper, make
+        # returns the `Parts`, when something is first chosen from them
+        self._mapper, self._make = mapper, make  # that draws them
 
     @cached_property
     def _parts(self) -> Parts:

@@ -11,8 +11,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["LinkedProperty", "is_own_write", "observe", "own_writes"]
-
 _writing = 0
 
 

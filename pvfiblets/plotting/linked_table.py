@@ -16,8 +16,6 @@ import pyvista as pv
 
 from pvfiblets.plotting.linked_property import is_own_write, observe
 
-__all__ = ["LinkedTable"]
-
 
 @dataclass(frozen=True)
 class _Written:
@@ -46,8 +44,7 @@ class LinkedTable:
     A method of the actor, ``modified``, is called at each change by other code, which may not have finished.
     """
 
-    touched = False
-    """Whether others have changed it since `note`."""
+    touched = False  # whether others have changed it since `note`
 
     def __init__(self, table: pv.LookupTable, modified: Callable[[], None]) -> None:
         self._table = table

@@ -15,8 +15,6 @@ from pvfiblets.plotting.coloured import ColouredActor
 from pvfiblets.plotting.colours import shared_limits
 from pvfiblets.plotting.settings import NoSetting
 
-__all__ = ["NO_ATTRIBUTE", "Plotted", "PlottedLines"]
-
 NO_ATTRIBUTE = "this mapper has no {name}: "
 
 

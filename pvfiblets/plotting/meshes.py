@@ -25,8 +25,7 @@ from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 
 __all__ = ["SUFFIXES", "mesh_facts", "read_mesh", "space_of_file"]
 
-SUFFIXES = (".ply", ".stl", ".obj", ".off", *GIFTI, *FREESURFER)
-"""Suffixes of files that hold only surfaces."""
+SUFFIXES = (".ply", ".stl", ".obj", ".off", *GIFTI, *FREESURFER)  # suffixes of files that hold only surfaces
 
 OF_VTK = (".vtk", ".vtp", *READ_BY_VTK)
 _HEAD = 1 << 16  # bytes in which titles and comments are looked for

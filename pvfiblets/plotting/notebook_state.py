@@ -11,29 +11,18 @@ from pathlib import Path
 import anywidget
 import traitlets
 
-__all__ = ["NotebookState"]
-
 _VECTORS = ("position", "focal_point", "up")
 _NUMBERS = ("view_angle", "parallel_scale")
 
 
 class NotebookState(anywidget.AnyWidget):
-    """State that a page in a notebook shares with the kernel.
-
-    Parameters
-    ----------
-    name : str
-        Of the page's frame.
-    camera : dict
-        ``position``, ``focal_point``, ``up`` (3 floats each, world mm), ``view_angle`` (degrees), ``parallel`` and
-        ``parallel_scale``.
-    picked : dict, optional
-        ``layer`` (number), ``streamline`` (number) and ``place`` (3 floats, world mm); None: nothing.
-    """
+    """State that a page in a notebook shares with the kernel."""
 
     _esm = Path(__file__).with_suffix(".js")
-    name = traitlets.Unicode().tag(sync=True)
+    name = traitlets.Unicode().tag(sync=True)  # of the page's frame
+    # `position`, `focal_point`, `up` (3 floats each, world mm), `view_angle` (degrees), `parallel` and `parallel_scale`
     camera = traitlets.Dict().tag(sync=True)
+    # `layer` (number), `streamline` (number) and `place` (3 floats, world mm); None: nothing
     picked = traitlets.Dict(allow_none=True, default_value=None).tag(sync=True)
 
     @traitlets.validate("camera")

@@ -21,8 +21,6 @@ from pvfiblets.plotting.page_scene import camera_place, page_and_actors
 if TYPE_CHECKING:
     from pvfiblets.plotting.notebook_state import NotebookState
 
-__all__ = ["PageView", "Picked", "page_view", "show"]
-
 _HEIGHTS = 50, 10_000
 
 

@@ -13,8 +13,7 @@ from pvfiblets.query.regions.shapes import SPHERE, SURFACE
 
 __all__ = ["cuts_of"]
 
-OF_THE_READER = 2
-"""Planes of the slab that a page's reader may cut with, which shares the places of clip planes."""
+OF_THE_READER = 2  # planes of the slab that a page's reader may cut with, which shares the places of clip planes
 
 
 def cuts_of(planes: npt.NDArray[np.float64], region: Any) -> tuple[dict[str, Any], bool]:

@@ -10,8 +10,6 @@ import pyvista as pv
 from pvfiblets.mappers.scene import to_array, world_planes
 from pvfiblets.page.scene import PageScene, encoded
 
-__all__ = ["add_image", "add_surface", "reflects_of"]
-
 _FLAT = 0  # VTK_FLAT
 
 

@@ -15,8 +15,6 @@ from pvfiblets.support.value_reference import relative
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = ["colours", "with_values"]
-
 
 def with_values(fiblets: FibletSet, source: Any, log_scale: bool) -> tuple[FibletSet, str]:
     """Return a set that has some values for its points as codes of what float32 holds, and their name."""

@@ -27,8 +27,7 @@ from pvfiblets.plotting.settings import Setting, number
 TONE = ("operator", "exposure", "white")
 """Settings of :attr:`PictureComponent.tone`; the other changes of colours are attributes of their own."""
 
-OPERATOR = "aces"
-"""Default operator."""
+OPERATOR = "aces"  # default operator
 
 TICK = 15  # ms between pictures while the focus is on its way
 

@@ -6,9 +6,6 @@ from typing import Any
 
 import pyvista as pv
 
-__all__ = ["plot"]
-
-
 _PLOTTER = ("off_screen", "notebook", "window_size", "theme", "border", "border_color", "border_width", "image_scale")
 _SHOW = (
     "full_screen", "screenshot", "interactive", "return_img", "return_cpos", "jupyter_backend", "jupyter_kwargs",

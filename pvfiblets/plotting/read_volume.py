@@ -9,8 +9,6 @@ import pyvista as pv
 from pvfiblets.images.sources import as_image
 from pvfiblets.query.density.map_files import image_of
 
-__all__ = ["read_volume"]
-
 
 def read_volume(path: str | PathLike[str]) -> pv.ImageData:
     """Read an image file with its place in space, which ``pv.read`` loses.

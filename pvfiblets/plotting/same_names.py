@@ -8,19 +8,15 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-__all__ = ["Preference", "with_preference"]
-
 Preference: TypeAlias = Literal["point", "cell"]
 
 _OTHER = {"point": "line", "cell": "point"}
 
 
 def with_preference(source: Any, preference: Preference) -> Any:
-    """Return a source in which each name means one array, that of points or that of lines (cells of VTK).
-
-    The other array of this name is called ``"NAME (line)"`` or ``"NAME (point)"``, and can be used by that. Sources
-    without such names are returned as they are, others are not changed.
-    """
+    """Return a source in which each name means one array, that of points or that of lines (cells of VTK)."""
+    # The other array of this name is called `"NAME (line)"` or `"NAME (point)"`, and can be used by that. Sources
+    # without such names are returned as they are, others are not changed.
     if preference not in _OTHER:
         raise ValueError(f"preference is {preference!r}; choose 'point' or 'cell'")
     other = _OTHER[preference]

@@ -8,8 +8,7 @@ import numpy as np
 
 __all__ = ["label_format", "label_text"]
 
-LABELS = 5
-"""Default number of labels beside a bar of PyVista."""
+LABELS = 5  # default number of labels beside a bar of PyVista
 
 WHOLE = 2.0**53
 

@@ -42,45 +42,21 @@ NAME_ONE = "Name one of these, or give an array"
 
 @dataclass(frozen=True)
 class Scalars:
-    """Numbers or colours found for an actor.
+    """Numbers or colours found for an actor."""
 
-    Parameters
-    ----------
-    name : str
-        For the scalar bar, and for the engine where ``kind`` is ``"point_scalar"``.
-    kind : str
-        One of `pvfiblets.colour_modes.MODES`: how the mapper has to use them.
-    values : array, optional
-        (n_streamlines,) float64 or (n_streamlines, 3 or 4) uint8.
-    range : tuple of float
-        Least and largest finite value; of what a few outliers make large, as curvature, 0 and a percentile.
-    positive : float
-        Least value above zero, where a logarithmic scale may begin.
-    categories : dict, optional
-        Of numbers that are labels: what each stands for.
-    category_colours : tuple, optional
-        Colours that the labels have by themselves, in their order.
-    volume : VolumeSource, optional
-        To be sampled at the points, where ``kind`` is ``"point_scalar"``.
-    has_alpha : bool
-        Whether some of the colours of points have an alpha below 1.
-    percentile : float, optional
-        Of the values, at which the range ends where it does not end at the largest.
-    rounding : float
-        By how much equal values may differ; a range that is no wider is that of one value. By default that of their
-        storage.
-    """
-
-    name: str
-    kind: str
-    values: np.ndarray | None = None
+    name: str  # for the scalar bar, and for the engine where `kind` is `"point_scalar"`
+    kind: str  # one of `pvfiblets.colour_modes.MODES`: how the mapper has to use them
+    values: np.ndarray | None = None  # (n_streamlines,) float64 or (n_streamlines, 3 or 4) uint8
+    # least and largest finite value; of what a few outliers make large, as curvature, 0 and a percentile
     range: tuple[float, float] = (0.0, 1.0)
-    positive: float = 1e-6
-    volume: VolumeSource | None = None
-    categories: dict[int, str] | None = None
-    category_colours: tuple[Any, ...] | None = None
-    has_alpha: bool = False
-    percentile: float | None = None
+    positive: float = 1e-6  # least value above zero, where a logarithmic scale may begin
+    volume: VolumeSource | None = None  # to be sampled at the points, where `kind` is `"point_scalar"`
+    categories: dict[int, str] | None = None  # of numbers that are labels: what each stands for
+    category_colours: tuple[Any, ...] | None = None  # colours that the labels have by themselves, in their order
+    has_alpha: bool = False  # whether some of the colours of points have an alpha below 1
+    percentile: float | None = None  # of the values, at which the range ends where it does not end at the largest
+    # by how much equal values may differ; a range that is no wider is that of one value. By default that of their
+    # storage.
     rounding: float = 0.0
 
     @property
@@ -124,29 +100,15 @@ class Scalars:
 
 @dataclass(frozen=True)
 class Numbers:
-    """The values of `scalars=` for some data.
+    """The values of `scalars=` for some data."""
 
-    Attributes
-    ----------
-    whole : str
-        What a row of numbers is for, where it is not a point.
-    count : int
-        Number of rows.
-    at_points : callable
-        A name to the numbers or colours of points; None where there are none.
-    per_line : mapping of str to array
-    built_in : mapping of str to callable
-        Each returns `Scalars`, or an array with a row for each line.
-    missing : callable
-        A name that is not there to the text of an error.
-    """
-
-    whole: str
-    count: int
-    at_points: Callable[[str], Scalars | None]
+    whole: str  # what a row of numbers is for, where it is not a point
+    count: int  # number of rows
+    at_points: Callable[[str], Scalars | None]  # A name to the numbers or colours of points; None where there are none
     per_line: Mapping[str, Any]
+    # each returns `Scalars`, or an array with a row for each line
     built_in: Mapping[str, Callable[[], Any]] = field(default_factory=dict)
-    missing: Callable[[str], str] = repr
+    missing: Callable[[str], str] = repr  # A name that is not there to the text of an error
 
 
 def find_scalars(numbers: Numbers, choice: Any, rgb: bool | None = None) -> Scalars:
@@ -238,10 +200,8 @@ def _range_and_positive(values: np.ndarray) -> dict[str, Any]:
 
 
 def row_scalars(name: str, values: Any, count: int, *, whole: str = "streamline") -> Scalars:
-    """Make :class:`Scalars` of one number, or one colour, per streamline, or whatever the ``whole`` is called.
-
-    Colours are (n, 3) or (n, 4): uint8 from 0 to 255, or floats from 0 to 1.
-    """
+    """Make :class:`Scalars` of one number, or one colour, per streamline, or whatever the ``whole`` is called."""
+    # Colours are (n, 3) or (n, 4): uint8 from 0 to 255, or floats from 0 to 1.
     values = np.asarray(values)
     if values.ndim == 2 and values.shape[1] == 1:
         values = values[:, 0]

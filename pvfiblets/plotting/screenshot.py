@@ -16,8 +16,7 @@ import pyvista as pv
 
 from pvfiblets.plotting.actor_registry import A, ActorRegistry
 
-ONE_BIT_FORMATS = (".png", ".tif", ".tiff", ".bmp")
-"""Kinds of files that hold one bit for a pixel."""
+ONE_BIT_FORMATS = (".png", ".tif", ".tiff", ".bmp")  # kinds of files that hold one bit for a pixel
 
 _HALF = 128
 
@@ -112,10 +111,8 @@ def _sampled_once(plotter: Any) -> AbstractContextManager[None]:
 
 
 def _taken(plotter: Any, scale: int, window_size: tuple[int, int] | None) -> npt.NDArray[np.uint8]:
-    """Return ``(height, width, 3)`` of a plotter as it is now.
-
-    Tiles of an enlarged picture are drawn past the plotter's callbacks: errors in them are raised here.
-    """
+    """Return ``(height, width, 3)`` of a plotter as it is now."""
+    # Tiles of an enlarged picture are drawn past the plotter's callbacks: errors in them are raised here.
     errors: list[Exception] = []
 
     def collect(*_: Any) -> None:

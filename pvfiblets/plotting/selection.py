@@ -19,36 +19,19 @@ if TYPE_CHECKING:
 __all__ = ["AS_BEFORE", "SelectedActor", "SelectionStyle"]
 
 MODES = ("replace", "add", "remove", "toggle")
-AS_BEFORE: Any = object()
-"""Default of arguments that change nothing."""
+AS_BEFORE: Any = object()  # default of arguments that change nothing
 
 
 @dataclass(frozen=True)
 class SelectionStyle:
-    """How selected lines stand out; width and tubes are for fiblets.
+    """How selected lines stand out; width and tubes are for fiblets."""
 
-    Attributes
-    ----------
-    color : tuple of 3 floats or None
-        RGB of those selected; ``None`` leaves them their own colours.
-    width : float or None
-        Pixels; ``None`` draws them as wide as all.
-    dim : float
-        How much of the others' colours gives way to the background, 0 to 1.
-    as_tubes : bool
-        Whether they are drawn as tubes.
-    radius : float
-        Of the tubes, mm.
-    silhouette : tuple of 3 floats or None
-        RGB of an outline around them.
-    """
-
-    color: tuple[float, ...] | None = None
-    width: float | None = None
-    dim: float = 0.8
-    as_tubes: bool = False
-    radius: float = 0.5
-    silhouette: tuple[float, float, float] | None = None
+    color: tuple[float, ...] | None = None  # RGB of those selected; `None` leaves them their own colours
+    width: float | None = None  # pixels; `None` draws them as wide as all
+    dim: float = 0.8  # how much of the others' colours gives way to the background, 0 to 1
+    as_tubes: bool = False  # whether they are drawn as tubes
+    radius: float = 0.5  # of the tubes, mm
+    silhouette: tuple[float, float, float] | None = None  # RGB of an outline around them
 
     def changed(self, **given: Any) -> SelectionStyle:
         """Return another style; arguments that are `AS_BEFORE` change nothing, others are checked."""

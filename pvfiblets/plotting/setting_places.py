@@ -9,14 +9,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 if TYPE_CHECKING:
     from pvfiblets.plotting.settings import Argument, Setting
 
-__all__ = ["COLOURS", "LATER", "MAPPER", "OPTIONS", "OWN", "PROPERTY", "Effect", "Own", "Place", "Switch", "Uniform"]
-
 
 class Place:
     """A place where an actor keeps a setting: it reads the setting, and applies its changes."""
 
-    checks: ClassVar[bool] = False
-    """Whether choices are looked at there, not before."""
+    checks: ClassVar[bool] = False  # whether choices are looked at there, not before
 
     def read(self, actor: Any, setting: Setting[Any]) -> Any:
         """Return the present value."""
@@ -105,17 +102,12 @@ class _Later(Own):
 
 
 class Effect(Place):
-    """An effect of the resolve: ``True`` for its defaults, a dict of what shall differ, ``False`` for off.
-
-    Parameters
-    ----------
-    kind : str
-        ``"module:class"`` of an effect (`pvfiblets.mappers.shader_effects`), whose fields are the settings.
-    """
+    """An effect of the resolve: ``True`` for its defaults, a dict of what shall differ, ``False`` for off."""
 
     made_with = False
 
     def __init__(self, kind: str) -> None:
+        # `"module:class"` of an effect (`pvfiblets.mappers.shader_effects`), whose fields are the settings
         self._kind = kind
 
     @property
@@ -146,20 +138,13 @@ class Switch(Effect):
 
 
 class Uniform(Place):
-    """A number in a piece of the resolve, ``shaders/resolve/PIECE.glsl``; the piece is there unless it is the default.
-
-    Parameters
-    ----------
-    piece : str
-        Of ``shaders/resolve``.
-    uniform : str
-        Its ``uniform float``.
-    """
+    """A number in a piece of the resolve, ``shaders/resolve/PIECE.glsl``; which is there unless at its default."""
 
     made_with = False
 
     def __init__(self, piece: str, uniform: str) -> None:
-        self.piece, self.uniform = piece, uniform
+        # its `uniform float`
+        self.piece, self.uniform = piece, uniform  # of `shaders/resolve`
 
     def read(self, actor: Any, setting: Setting[Any]) -> Any:
         """Return the number."""

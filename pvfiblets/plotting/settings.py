@@ -33,100 +33,55 @@ __all__ = [
 
 T = TypeVar("T")
 
-SAME: Any = object()
-"""Default of a row: that of the setting."""
+SAME: Any = object()  # default of a row: that of the setting
 
 
 @dataclass(frozen=True)
 class Row:
-    """Appearance of a setting on the web page.
+    """Appearance of a setting on the web page."""
 
-    Attributes
-    ----------
-    label, help : str
-        For people; the help is the setting's own doc where it is empty.
-    group : str
-        Heading that it stands under.
-    type : str
-        ``"choice"``, ``"number"``, ``"range"`` (two numbers, the low one first), ``"numbers"`` (a list of them),
-        ``"colour"``, ``"bool"`` or ``"text"``; found from the setting where it is empty.
-    default : JSON value
-        What the page begins with; the setting's own by default.
-    optional : bool
-        Whether ``None`` is allowed: as the data or the program sees fit.
-    choices : sequence of (value, label), or function of the data
-        Options of a choice; the setting's by default.
-    limits : (low, high), or function of the data
-        Limits of a number; for other types the range of a slider only. The setting's by default.
-    whole : bool
-        Whether a number has no fraction.
-    read : function of the actor, optional
-        What ``None`` amounts to, or what a property is that can only be read.
-    span : function of the actor, optional
-        Between what a range makes sense.
-    read_only : bool
-    resets : tuple of str
-        Settings that go back to their defaults when this one changes.
-    matters : function of the settings, optional
-        Whether it changes anything as the others are.
-    volumes : bool
-        Whether the scene's volumes are choices, too.
-    """
-
-    label: str
+    label: str  # for people; the help is the setting's own doc where it is empty
     help: str = ""
-    group: str = "Colours"
+    group: str = "Colours"  # heading that it stands under
+    # `"choice"`, `"number"`, `"range"` (two numbers, the low one first), `"numbers"` (a list of them), `"colour"`,
+    # `"bool"` or `"text"`; found from the setting where it is empty
     type: str = ""
-    default: Any = SAME
-    optional: bool = False
+    default: Any = SAME  # what the page begins with; the setting's own by default
+    optional: bool = False  # whether `None` is allowed: as the data or the program sees fit
+    # (value, label): options of a choice; the setting's by default
     choices: Sequence[tuple[Any, str]] | Callable[[Any], Sequence[tuple[Any, str]]] | None = None
+    # (low, high), or function of the data: limits of a number; for other types the range of a slider only. The
+    # setting's by default.
     limits: tuple[float, float] | Callable[[Any], tuple[float, float]] | None = None
-    whole: bool = False
-    read: Callable[[Any], Any] | None = None
-    span: Callable[[Any], tuple[float, float]] | None = None
+    whole: bool = False  # whether a number has no fraction
+    read: Callable[[Any], Any] | None = None  # what `None` amounts to, or what a property is that can only be read
+    span: Callable[[Any], tuple[float, float]] | None = None  # between what a range makes sense
     read_only: bool = False
-    resets: tuple[str, ...] = ()
-    matters: Callable[[Mapping[str, Any]], bool] | None = None
-    volumes: bool = False
+    resets: tuple[str, ...] = ()  # settings that go back to their defaults when this one changes
+    matters: Callable[[Mapping[str, Any]], bool] | None = None  # whether it changes anything as the others are
+    volumes: bool = False  # whether the scene's volumes are choices, too
 
 
 # Declarations ---------------------------------------------------------------------------------------
 
 
 class Argument:
-    """An argument of ``add_...`` that is no property of the actor.
-
-    Parameters
-    ----------
-    default : object
-    doc : str
-        For the section ``Parameters``; lines are wrapped there. Paragraphs are parted by empty lines.
-    kind : str
-        Its type, as Python annotates it.
-    header : str, optional
-        Its type, as numpydoc says it; found from ``kind``, ``choices`` and ``default`` by default.
-    choices : tuple
-        All that it may be, if these are few.
-    where : Place, optional
-        What is made of it.
-    field : str, optional
-        Its name there; the same by default.
-    check : function of name and value, optional
-        Returns the value as it is kept, or raises an error that names it. A place that checks needs none.
-    """
+    """An argument of ``add_...`` that is no property of the actor."""
 
     name: str
 
     def __init__(
         self,
         default: Any,
-        doc: str,
+        doc: str,  # for the section `Parameters`; lines are wrapped there. Paragraphs are parted by empty lines.
         *,
-        kind: str = "Any",
+        kind: str = "Any",  # its type, as Python annotates it
+        # its type, as numpydoc says it; found from `kind`, `choices` and `default` by default
         header: str | None = None,
-        choices: tuple[Any, ...] = (),
-        where: Place | None = None,
-        field: str = "",
+        choices: tuple[Any, ...] = (),  # all that it may be, if these are few
+        where: Place | None = None,  # its target
+        field: str = "",  # its name there; the same by default
+        # returns the value as it is kept, or raises an error that names it. A place that checks needs none.
         check: Callable[[str, Any], Any] | None = None,
     ) -> None:
         self.default, self.argument_doc, self.kind, self.choices = default, doc, kind, choices
@@ -157,44 +112,22 @@ class Argument:
 
 
 class Setting(Argument, Generic[T]):
-    """Something that can be set of an actor at any time, and when it is made.
+    """Something that can be set of an actor at any time, and when it is made."""
 
-    Parameters
-    ----------
-    default : object
-        Of the argument.
-    doc : str
-        Of the property, and of the argument if ``argument`` does not say more.
-    argument : str or False, optional
-        Doc of the argument; False if there is none.
-    low, high : float, optional
-        Least and greatest number; checked where there is no ``check``.
-    unit : str
-        Of the number, for messages.
-    where : Place
-        What it changes.
-    read : function of actor, optional
-        Value of the property, where it is not the stored one.
-    row : Row, optional
-        How the web page shows it; without it, the page does not have it.
-    **more
-        As of `Argument`.
-    """
-
-    where: Place
+    where: Place  # its target
 
     def __init__(
         self,
-        default: Any,
-        doc: str,
+        default: Any,  # of the argument
+        doc: str,  # of the property, and of the argument if `argument` does not say more
         *,
-        argument: str | bool = True,
-        low: float | None = None,
+        argument: str | bool = True,  # doc of the argument; False if there is none
+        low: float | None = None,  # least and greatest number; checked where there is no `check`
         high: float | None = None,
-        unit: str = "",
+        unit: str = "",  # of the number, for messages
         where: Place,
-        read: Callable[[Any], Any] | None = None,
-        row: Row | None = None,
+        read: Callable[[Any], Any] | None = None,  # value of the property, where it is not the stored one
+        row: Row | None = None,  # how the web page shows it; without it, the page does not have it
         **more: Any,
     ) -> None:
         super().__init__(default, argument if isinstance(argument, str) else doc, where=where, **more)
@@ -245,16 +178,10 @@ def _is(value: Any, choice: Any) -> bool:
 
 
 class NoSetting:
-    """A setting that other actors have; asking for it says what to use.
-
-    Parameters
-    ----------
-    why : str
-        Message; ``{name}`` in it is the setting's.
-    """
+    """A setting that other actors have; asking for it says what to use."""
 
     def __init__(self, why: str) -> None:
-        self._why = why
+        self._why = why  # message; `{name}` in it is the setting's
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
@@ -310,25 +237,13 @@ def arguments(settings: type[Settings]) -> dict[str, Argument]:
 
 
 class Given(dict[str, Any]):
-    """Settings that were given to ``add_...``, checked, and the defaults of all others.
-
-    Parameters
-    ----------
-    settings : type
-        The drawable's `Settings`.
-    given : mapping, optional
-        By name; unknown names are left to others.
-
-    Attributes
-    ----------
-    named : frozenset of str
-        Those that were given, and are not None.
-    """
+    """Settings that were given to ``add_...``, checked, and the defaults of all others."""
 
     def __init__(self, settings: type[Settings], given: Mapping[str, Any] | None = None) -> None:
         self._known = arguments(settings)
         given = given or {}
         said = (name for name, value in given.items() if name in self._known and value is not None)
+        # the given settings that are not None
         self.named: frozenset[str] = given.named if isinstance(given, Given) else frozenset(said)
         super().__init__((name, one.given(given.get(name, one.default))) for name, one in self._known.items())
 

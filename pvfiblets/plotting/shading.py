@@ -13,8 +13,7 @@ from pvfiblets.mappers.shading import Halos
 if TYPE_CHECKING:
     from pvfiblets.mappers.engine_mapper import EngineMapper
 
-BACKGROUND = "background"
-"""Colour of halos that are not seen."""
+BACKGROUND = "background"  # colour of halos that are not seen
 
 
 class Shades(dict[str, dict[str, Any]]):

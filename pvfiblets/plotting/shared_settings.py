@@ -21,8 +21,7 @@ MAP_NAMES = (*CMAPS, *(f"{name}_r" for name in CMAPS))
 COLOR_LIKE = "ColorLike | None"
 COLORMAP = "ColormapOptions | pv.LookupTable | None"
 LIMITS = "float | Sequence[float] | None"
-OPACITIES = "float | str | Sequence[float] | np.ndarray | None"
-"""Types that are PyVista's own, for annotations."""
+OPACITIES = "float | str | Sequence[float] | np.ndarray | None"  # types that are PyVista's own, for annotations
 
 MAPS = [(name, name.replace("_", " ")) for name in MAP_NAMES]
 

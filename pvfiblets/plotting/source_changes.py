@@ -8,18 +8,9 @@ from __future__ import annotations
 import warnings
 from typing import Any
 
-__all__ = ["SourceChanges"]
-
 
 class SourceChanges:
-    """The state in which a data set was added.
-
-    Parameters
-    ----------
-    source : vtkDataSet
-    actor : pyvista.Actor
-        What draws the copy.
-    """
+    """The state in which a data set was added."""
 
     def __init__(self, source: Any, actor: Any) -> None:
         from pvfiblets.mappers.windows import weak

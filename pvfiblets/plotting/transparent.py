@@ -18,8 +18,6 @@ import pyvista as pv
 
 from pvfiblets.plotting.call_signature import replace_method
 
-__all__ = ["screenshot"]
-
 # Red and blue differ. Both of a pair are dark, or light: what contrasts with the background stays as it is.
 _DARK = (0.0, 0.0, 0.0), (1.0, 0.0, 1.0)
 _LIGHT = (1.0, 1.0, 1.0), (0.0, 1.0, 0.0)

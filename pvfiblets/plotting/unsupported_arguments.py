@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import pyvista as pv
 
-__all__ = ["why_not"]
-
 _FACETS = "lines, tubes, halos and volumes have no facets"
 _POINTS = "lines, tubes, halos and volumes are no points"
 

@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["DIRECTIONS", "point_camera", "visible_bounds"]
-
 DIRECTIONS = {
     "axial": ((0, 0, 1), (0, 1, 0)),
     "inferior": ((0, 0, -1), (0, 1, 0)),
@@ -28,10 +26,8 @@ def visible_bounds(plotter: Any) -> tuple[float, ...]:
 
 
 def point_camera(plotter: Any, view: str) -> None:
-    """Look at all that is visible from one of the named directions, as near as the picture's edges allow.
-
-    Nothing is rendered.
-    """
+    """Look at all that is visible from one of the named directions, as near as the picture's edges allow."""
+    # Nothing is rendered.
     direction, up = DIRECTIONS[view]
     plotter.renderer.view_vector(direction, viewup=up, render=False)  # the plotter's own methods render
     plotter.renderer.reset_camera(render=False)

@@ -11,8 +11,6 @@ from typing import Any
 
 from pvfiblets.plotting.call_signature import replace_method
 
-__all__ = ["METHODS"]
-
 METHODS = ("enable_rectangle_visible_picking", "enable_cell_picking")
 
 

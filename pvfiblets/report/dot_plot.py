@@ -10,8 +10,6 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from .record import Axes, Record, StudyResult
 
-__all__ = ["in_rows"]
-
 
 def in_rows(study: StudyResult, records: Sequence[Record], pair: Axes, colours: Mapping[str, str]) -> Any:
     """Draw a picture of two panels: a row for each record, for each of its two figures a dot."""

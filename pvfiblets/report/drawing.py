@@ -12,11 +12,9 @@ from .study import Options, Unavailable
 
 __all__ = ["Part", "WindowPart", "data_bytes", "drawing_context", "run_parts"]
 
-Part: TypeAlias = Callable[[Any, Options], Iterator[Record]]
-"""A part of a study: from a context and options to records."""
+Part: TypeAlias = Callable[[Any, Options], Iterator[Record]]  # A part of a study: from a context and options to records
 
-WindowPart: TypeAlias = Callable[[Options], Iterator[Record]]
-"""A part of a study that draws in windows."""
+WindowPart: TypeAlias = Callable[[Options], Iterator[Record]]  # A part of a study that draws in windows
 
 OF_THE_PICTURE = ("gbuffer", "occlusion", "framebuffer", "depth", "depth of tubes", "marks of tubes")
 """Buffers that grow with the picture, not with the data."""
@@ -47,10 +45,8 @@ def run_parts(
     options: Options,
     windows: Mapping[WindowPart, float] = MappingProxyType({}),
 ) -> Iterator[Record]:
-    """Yield records part by part, each with its share of what time is left, by weights.
-
-    Parts in windows come after the bare context is gone: a window that VTK closes takes older ones' display along.
-    """
+    """Yield records part by part, each with its share of what time is left, by weights."""
+    # Parts in windows come after the bare context is gone: a window that VTK closes takes older ones' display along.
     weights = [*parts.values(), *windows.values()]
 
     def share(number: int) -> Options:

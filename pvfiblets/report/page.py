@@ -11,8 +11,7 @@ from .report_file import Report
 
 __all__ = ["page"]
 
-MANY = 6
-"""Rows that a table has for one reason."""
+MANY = 6  # rows that a table has for one reason
 
 _WHAT = (
     "The approximations of pvfiblets: the distance of each from the exact answer, and its cost, beside other "

@@ -7,8 +7,6 @@ from collections.abc import Iterable, Sequence
 
 from .record import Axes, Record
 
-__all__ = ["mark_fronts", "pareto"]
-
 
 def pareto(points: Sequence[tuple[float, float]]) -> list[bool]:
     """Return whether each point lies on the Pareto front, less being better."""

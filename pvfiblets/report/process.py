@@ -12,8 +12,6 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import IO, Any
 
-__all__ = ["CellProcess", "Row", "ended", "serve"]
-
 Row = dict[str, Any]
 
 
@@ -37,10 +35,8 @@ class CellProcess:
         return cls([sys.executable, "-m", module])
 
     def measure(self, cell: Row, seconds: float) -> Row:
-        """Return a cell's row, or ``unmeasured``: it took too long, or what the process died of.
-
-        The next cell then has a new process.
-        """
+        """Return a cell's row, or ``unmeasured``: it took too long, or what the process died of."""
+        # The next cell then has a new process.
         if self._process is None:
             self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115 - closed with the process
             self._process = subprocess.Popen(

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-__all__ = ["FRAME", "Axes", "CaseResult", "Figure", "LeftOut", "Record", "StudyResult", "Timing"]
-
 FRAME = "frame"  # the item of pictures
 
 

@@ -18,10 +18,7 @@ from typing import Protocol
 
 from .record import Axes, CaseResult, LeftOut, Record
 
-__all__ = ["LATE", "Budget", "Options", "Study", "Unavailable"]
-
-LATE = "the time given was used up"
-"""Why something was left out."""
+LATE = "the time given was used up"  # why something was left out
 
 
 class Unavailable(Exception):  # noqa: N818 - it is a state to be reported, not an error

@@ -13,8 +13,6 @@ import numpy.typing as npt
 from .cameras import Camera
 from .timing import Turns, clock_of
 
-__all__ = ["Window"]
-
 
 class Window:
     """A window to add to, then to :meth:`show`.

@@ -59,15 +59,14 @@ def table_colours(codes: npt.NDArray[Any], table: npt.NDArray[np.uint8]) -> Floa
     return (table.astype(np.float32) / np.float32(255.0))[np.maximum(codes, 0)]
 
 
-def outlines(codes: npt.NDArray[Any], width: int = 1) -> Mask:
-    """Return which pixels have another code beside, above or below them within `width` pixels."""
+def outlines(codes: npt.NDArray[Any]) -> Mask:
+    """Return which pixels have another code beside, above or below them."""
     edge = np.zeros(codes.shape, bool)
-    for step in range(1, width + 1):
-        across, down = codes[:, step:] != codes[:, :-step], codes[step:] != codes[:-step]
-        edge[:, step:] |= across
-        edge[:, :-step] |= across
-        edge[step:] |= down
-        edge[:-step] |= down
+    across, down = codes[:, 1:] != codes[:, :-1], codes[1:] != codes[:-1]
+    edge[:, 1:] |= across
+    edge[:, :-1] |= across
+    edge[1:] |= down
+    edge[:-1] |= down
     return edge
 
 

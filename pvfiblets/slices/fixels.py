@@ -24,34 +24,20 @@ __all__ = ["Fixels", "files_beside", "read_fixels"]
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-SUFFIXES = (".mif", ".mif.gz", ".nii", ".nii.gz")
-"""Suffixes of the files of a folder."""
+SUFFIXES = (".mif", ".mif.gz", ".nii", ".nii.gz")  # suffixes of the files of a folder
 
 
 @dataclass(frozen=True, eq=False)
 class Fixels:
-    """Directions in voxels.
+    """Directions in voxels."""
 
-    Parameters
-    ----------
-    counts, first : numpy.ndarray
-        ``(nx, ny, nz)`` int64: fixels of each voxel, and the number of its first.
-    directions : numpy.ndarray
-        ``(n, 3)`` float32, along right, front and up.
-    arrays : mapping of str to numpy.ndarray
-        ``(n,)`` numbers of fixels that have been read.
-    folder : Path, optional
-        Where more numbers are.
-    shown : str, optional
-        Those that a file was opened for.
-    """
-
-    counts: Ints
+    counts: Ints  # `(nx, ny, nz)` int64: fixels of each voxel, and the number of its first
     first: Ints
-    directions: npt.NDArray[np.float32]
+    directions: npt.NDArray[np.float32]  # `(n, 3)` float32, along right, front and up
+    # `(n,)` numbers of fixels that have been read
     arrays: Mapping[str, npt.NDArray[np.float32]] = field(default_factory=dict)
-    folder: Path | None = None
-    shown: str | None = None
+    folder: Path | None = None  # where more numbers are
+    shown: str | None = None  # the fixels that a file was opened for
 
     def __len__(self) -> int:
         return len(self.directions)

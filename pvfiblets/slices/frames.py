@@ -28,28 +28,17 @@ _EDGES = [
     if bin(a ^ b).count("1") == 1  # corners whose numbers differ in one bit
 ]
 
-MOST_PIXELS = 2048
-"""Along a side of a slice."""
+MOST_PIXELS = 2048  # along a side of a slice
 
 
 @dataclass(frozen=True, eq=False)
 class PlaneGrid:
-    """Pixels of a plane.
+    """Pixels of a plane."""
 
-    Attributes
-    ----------
-    corner : numpy.ndarray
-        ``(3,)`` mm: the outer corner of the first pixel.
-    along, up : numpy.ndarray
-        ``(3,)`` mm from a pixel to the next.
-    shape : tuple of int
-        Pixels along and up.
-    """
-
-    corner: Array
-    along: Array
+    corner: Array  # `(3,)` mm: the outer corner of the first pixel
+    along: Array  # `(3,)` mm from a pixel to the next
     up: Array
-    shape: tuple[int, int]
+    shape: tuple[int, int]  # pixels along and up
 
     @property
     def first(self) -> Array:

@@ -20,8 +20,7 @@ Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 KINDS = ("peaks", "tensor", "sh", "fixels")
-LINES = ("peaks", "fixels")
-"""Kinds that are drawn as lines."""
+LINES = ("peaks", "fixels")  # kinds that are drawn as lines
 
 TENSORS = {
     "mrtrix": (0, 3, 4, 3, 1, 5, 4, 5, 2), "dipy": (0, 1, 3, 1, 2, 4, 3, 4, 5), "fsl": (0, 1, 2, 1, 3, 4, 2, 4, 5),
@@ -31,18 +30,10 @@ TENSORS = {
 
 @dataclass(frozen=True, eq=False)
 class Glyphs:
-    """Points of all glyphs of a plane, and their colours.
+    """Points of all glyphs of a plane, and their colours."""
 
-    Attributes
-    ----------
-    points : numpy.ndarray
-        ``(n, m, 3)`` mm: m points of each of n glyphs.
-    colours : numpy.ndarray
-        ``(n, m, 3)`` uint8: directions to the right, front and up as red, green and blue.
-    """
-
-    points: Array
-    colours: npt.NDArray[np.uint8]
+    points: Array  # `(n, m, 3)` mm: m points of each of n glyphs
+    colours: npt.NDArray[np.uint8]  # `(n, m, 3)` uint8: directions to the right, front and up as red, green and blue
 
 
 def axes_of_glyphs(kind: str, tensor: str, vectors: str | None) -> str:
@@ -72,10 +63,8 @@ def check_glyphs(image: SliceImage, kind: str, basis: str, full: bool, tensor: s
 
 
 def voxels_on_plane(image: SliceImage, position: Array, normal: Array) -> Ints:
-    """Return ``(n, 3)`` the voxels nearest to a plane: along a grid's axis one layer, not all zero and all finite.
-
-    For fixels, voxels with any.
-    """
+    """Return ``(n, 3)`` the voxels nearest to a plane: along a grid's axis one layer, not all zero and all finite."""
+    # For fixels, voxels with any.
     step = image.affine[:3, :3].T @ normal
     start = float((image.affine[:3, 3] - position) @ normal)
     thick = float(abs(step).max())

@@ -18,11 +18,9 @@ __all__ = ["KINDS", "SliceImage", "as_slice_image"]
 
 Array = npt.NDArray[np.float64]
 
-KINDS = ("scalars", "rgb", "direction", "labels")
-"""Meanings of the numbers of a voxel."""
+KINDS = ("scalars", "rgb", "direction", "labels")  # meanings of the numbers of a voxel
 
-SAMPLED = 1_000_000
-"""Number of voxels for percentiles; of larger images every n-th."""
+SAMPLED = 1_000_000  # number of voxels for percentiles; of larger images every n-th
 
 
 @dataclass(frozen=True, eq=False)

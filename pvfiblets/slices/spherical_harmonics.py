@@ -53,10 +53,8 @@ def sh_matrix(directions: npt.ArrayLike, degree: int, basis: str = "mrtrix", ful
 
 
 def _legendre(z: Array, degree: int) -> dict[tuple[int, int], Array]:
-    """Return associated Legendre functions, normalised on the sphere, with the phase of Condon and Shortley.
-
-    By recurrences over normalised functions, which neither overflow nor cancel at any degree in use.
-    """
+    """Return associated Legendre functions, normalised on the sphere, with the phase of Condon and Shortley."""
+    # By recurrences over normalised functions, which neither overflow nor cancel at any degree in use.
     across = np.sqrt(np.maximum(1.0 - z * z, 0.0))
     found = {(0, 0): np.full_like(z, math.sqrt(0.25 / math.pi))}
     for m in range(degree + 1):

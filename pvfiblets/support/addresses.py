@@ -7,8 +7,6 @@ from os import PathLike
 from pathlib import Path
 from urllib.parse import urlsplit
 
-__all__ = ["is_url", "path_of"]
-
 
 def is_url(place: str | PathLike[str]) -> bool:
     """Whether a place is an address such as ``https://...`` or ``s3://...`` rather than a path."""

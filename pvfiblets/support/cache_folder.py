@@ -6,8 +6,6 @@ import hashlib
 import os
 from pathlib import Path
 
-__all__ = ["cache_folder", "is_first_time"]
-
 
 def cache_folder() -> Path:
     """Return the folder of this program's caches, as the system has it; it may not be there yet."""

@@ -6,8 +6,6 @@ import os
 import warnings
 from pathlib import Path
 
-__all__ = ["note", "notes_of"]
-
 _MOST = 4096  # files
 _notes: dict[tuple[str, int], list[str]] = {}
 

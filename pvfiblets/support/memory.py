@@ -51,8 +51,7 @@ ENVIRONMENT = {"MALLOC_ARENA_MAX": "1"}
 what each of them got, though all of it is free."""
 _MEMORY = Path("/proc/meminfo")
 _GROUP = Path("/sys/fs/cgroup")
-RESERVE = 48 * MEBIBYTE
-"""Bytes that must remain after something was loaded, so that the rest of the program goes on."""
+RESERVE = 48 * MEBIBYTE  # bytes that must remain after something was loaded, so that the rest of the program goes on
 _UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
 Result = TypeVar("Result")
@@ -149,10 +148,8 @@ def limit(size: int) -> None:
 
 @contextmanager
 def limited(size: int | None) -> Iterator[None]:
-    """Limit this process to some bytes of memory in this scope, where the system can limit it.
-
-    A limit that it has already stays, if it is lower.
-    """
+    """Limit this process to some bytes of memory in this scope, where the system can limit it."""
+    # A limit that it has already stays, if it is lower.
     before = resource.getrlimit(resource.RLIMIT_DATA) if CAN_LIMIT and resource is not None else None
     if size is None or before is None or (before[0] != resource.RLIM_INFINITY and before[0] <= size):
         yield

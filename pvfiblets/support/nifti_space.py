@@ -27,8 +27,7 @@ Units: TypeAlias = Literal["mm", "header"]
 MATRICES: tuple[Matrix, ...] = get_args(Matrix)
 UNITS: tuple[Units, ...] = get_args(Units)
 
-DIFFERENT = 0.1
-"""Tolerance of equal matrices: distance of an image's corners, in voxels."""
+DIFFERENT = 0.1  # tolerance of equal matrices: distance of an image's corners, in voxels
 
 _MM = {"meter": 1000.0, "micron": 0.001}
 _SIDES = {

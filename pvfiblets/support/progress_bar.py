@@ -5,8 +5,6 @@ from __future__ import annotations
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
-__all__ = ["progress_bar"]
-
 
 class _NoBar:
     """A progress bar that shows nothing."""

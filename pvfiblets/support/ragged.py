@@ -12,8 +12,7 @@ Array: TypeAlias = NDArray[Any]
 Floats: TypeAlias = NDArray[np.floating[Any]]
 Ints: TypeAlias = NDArray[np.int64]
 
-_BLOCK_POINTS = 1 << 18
-"""Points handled at a time by reductions: about 6 MB of float64, which stays in cache."""
+_BLOCK_POINTS = 1 << 18  # points handled at a time by reductions: about 6 MB of float64, which stays in cache
 
 
 def offsets_from_counts(counts: ArrayLike) -> Ints:

@@ -19,8 +19,6 @@ from functools import cache
 from os import PathLike
 from pathlib import Path
 
-__all__ = ["locked", "remove_unfinished", "scratch_beside", "unfinished"]
-
 _NAME = re.compile(r"\..+\.([0-9a-f]{8})-([0-9]+)\.(part|old|scratch)")
 _NUMBERS = itertools.count()
 _ID = Path("/etc/machine-id")
@@ -56,14 +54,10 @@ def scratch_beside(target: Path) -> Iterator[Path]:
 
 
 def remove_unfinished(folder: str | PathLike[str]) -> list[Path]:
-    """Remove what killed writers left in a folder, and warn of what that was.
-
-    Notes
-    -----
-    Only if three things agree: this machine wrote it, no process has the writer's number, and its lock is
-    free. So files that another machine writes to a shared folder stay, and a container's with the same name.
-    Without such locks (Windows) nothing is removed.
-    """
+    """Remove what killed writers left in a folder, and warn of what that was."""
+    # Only if three things agree: this machine wrote it, no process has the writer's number, and its lock is free. So
+    # files that another machine writes to a shared folder stay, and a container's with the same name. Without such
+    # locks (Windows) nothing is removed.
     gone: list[Path] = []
     with suppress(OSError):
         for entry in sorted(Path(folder).iterdir()):

@@ -12,8 +12,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["relative", "value_reference"]
-
 _SAMPLE = 1 << 16  # values looked at
 _NEAR = 16.0  # numbers at most so many spreads from 0 lose at most 2e-6 of the spread in float32
 

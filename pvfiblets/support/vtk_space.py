@@ -18,25 +18,9 @@ import numpy as np
 
 from pvfiblets.support.ragged import Array
 
-__all__ = [
-    "FIELD",
-    "OURS",
-    "Space",
-    "checked",
-    "space_in_header",
-    "space_named",
-    "space_of_dataset",
-    "space_taken",
-    "to_ras",
-    "unnamed",
-    "unnamed_as",
-    "unnamed_here",
-]
-
 Space: TypeAlias = Literal["RAS", "LPS"]
 
-FIELD = "SPACE"
-"""Name of the field array of strings."""
+FIELD = "SPACE"  # name of the field array of strings
 OURS: Space = "RAS"
 
 _NAMES: dict[str, Space] = {

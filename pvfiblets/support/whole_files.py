@@ -13,18 +13,14 @@ from typing import BinaryIO
 
 from .unfinished import locked, unfinished
 
-__all__ = ["made_folder", "naming_target", "replacing"]
-
 _FULL = (errno.ENOSPC, errno.EDQUOT) if hasattr(errno, "EDQUOT") else (errno.ENOSPC,)
 _CLOSED = (errno.EACCES, errno.EPERM, errno.EROFS)
 
 
 @contextmanager
 def replacing(path: str | PathLike[str], needed: int | None = None) -> Iterator[BinaryIO]:
-    """Open a temporary file beside `path` for writing; it takes the name when all went well.
-
-    A reader therefore never meets half a file, and a failed write leaves an old file as it was.
-    """
+    """Open a temporary file beside `path` for writing; it takes the name when all went well."""
+    # A reader therefore never meets half a file, and a failed write leaves an old file as it was.
     target = Path(path)
     temporary = unfinished(target)
     with naming_target(target, needed):

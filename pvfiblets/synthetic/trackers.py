@@ -30,8 +30,7 @@ __all__ = ["ALGORITHMS", "NOISE", "NOISE_STEP", "tracked_streamlines"]
 
 ALGORITHMS = ("iFOD1", "iFOD2", "SD_STREAM", "EuDX")
 
-NOISE, NOISE_STEP = 4.0, 0.2
-"""Degrees per axis of a probabilistic tracker's turns, at a step in mm."""
+NOISE, NOISE_STEP = 4.0, 0.2  # degrees per axis of a probabilistic tracker's turns, at a step in mm
 
 VOXEL = 2.0  # mm
 HELD = 0.8  # share of a direction that is that of the voxel; turns are then as sharp as in EuDX of a real brain

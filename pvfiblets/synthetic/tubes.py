@@ -17,8 +17,6 @@ from pvfiblets.tubes.spline_tubes import SplineTubes
 
 from .tracking import brain_streamlines
 
-__all__ = ["SIZES", "TUBE_SETS", "tube_set"]
-
 SIZES = {
     "fibers": (241, 3530),
     "hotroom": (722, 30948),

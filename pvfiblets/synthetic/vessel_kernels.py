@@ -10,8 +10,6 @@ import numpy as np
 
 from pvfiblets.codec.jit import kernel, parallel_kernel
 
-__all__ = ["draw_head", "draw_vessels"]
-
 
 @kernel
 def _uniform(seed: int, index: int) -> float:

@@ -12,13 +12,10 @@ from ..lines import Lines, flat, gather, joined, numbers_or_colours, refuse_word
 from .spline_tubes import Doubles, NodeValues, SplineTubes, chord_lengths
 from .tangents import METHODS, Steps, derivatives
 
-__all__ = ["RADIUS_NAMES", "RADIUS_SHARE", "as_spline_tubes"]
-
 RADIUS_NAMES = ("radius", "Radius", "MaximumInscribedSphereRadius")
 """Point data that is taken for the radius when none is given; the last is VMTK's."""
 
-RADIUS_SHARE = 0.005
-"""Radius when there is none: this share of the diagonal of the points' bounds."""
+RADIUS_SHARE = 0.005  # radius when there is none: this share of the diagonal of the points' bounds
 
 
 def as_spline_tubes(

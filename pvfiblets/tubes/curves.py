@@ -31,22 +31,16 @@ __all__ = ["MIDDLE", "Boxes", "boxes", "controls", "cubic", "derivative", "devia
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-MIDDLE = 0.25
-"""Distance of the middle control points along the end tangents: ``c`` above."""
+MIDDLE = 0.25  # distance of the middle control points along the end tangents: `c` above
 
-_BLOCK = 1 << 14
-"""Segments measured at a time, so that the samples of millions of them need no gigabytes."""
+_BLOCK = 1 << 14  # segments measured at a time, so that the samples of millions of them need no gigabytes
 
 
 def controls(tubes: SplineTubes, segments: npt.ArrayLike | None = None, middle: float = MIDDLE) -> Array:
-    """Control points of the halves of segments.
-
-    Negative control radii are raised to 0 before the halves are joined, so that they still meet with one derivative.
-
-    Notes
-    -----
-    Russig et al. 2020, section 3.2, "Segment subdivision".
-    """
+    """Control points of the halves of segments."""
+    # Negative control radii are raised to 0 before the halves are joined, so that they still meet with one derivative.
+    #
+    # Russig et al. 2020, section 3.2, "Segment subdivision".
     if not 0.0 <= middle <= 1.0:
         raise ValueError(f"middle is {middle!r}, expected a number of 0 to 1, such as {MIDDLE} or 1 / 3 (the paper)")
     start, stop, slope, end_slope = _ends(tubes, segments)
@@ -100,21 +94,11 @@ def sample_spheres(controls: npt.ArrayLike, count: int = 33) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Boxes:
-    """Oriented boxes.
+    """Oriented boxes."""
 
-    Attributes
-    ----------
-    centre : numpy.ndarray
-        ``(k, 3)`` mm.
-    axes : numpy.ndarray
-        ``(k, 3, 3)``: rows are the unit vectors of a right-handed frame, in the paper ``R``.
-    half : numpy.ndarray
-        ``(k, 3)`` mm, half of each edge.
-    """
-
-    centre: Array
-    axes: Array
-    half: Array
+    centre: Array  # `(k, 3)` mm
+    axes: Array  # `(k, 3, 3)`: rows are the unit vectors of a right-handed frame, in the paper `R`
+    half: Array  # `(k, 3)` mm, half of each edge
 
     @property
     def corners(self) -> Array:
@@ -138,16 +122,12 @@ class Boxes:
 
 
 def boxes(controls: npt.ArrayLike) -> Boxes:
-    """Box of each half, along the chord and as tight as that allows.
-
-    The first axis runs from start to end, the second to the side that the curve bends to. Where the curve ends at its
-    start, the first axis is that of its bend; where it does not bend, the second is any one across.
-
-    Notes
-    -----
-    Russig et al. 2020, section 3.2, "Silhouettes": the extrema of ``q(t) - r(t)`` and ``q(t) + r(t)``, which lie at the
-    ends or where the derivative, linear in ``t``, is 0.
-    """
+    """Box of each half, along the chord and as tight as that allows."""
+    # The first axis runs from start to end, the second to the side that the curve bends to. Where the curve ends at its
+    # start, the first axis is that of its bend; where it does not bend, the second is any one across.
+    #
+    # Russig et al. 2020, section 3.2, "Silhouettes": the extrema of `q(t) - r(t)` and `q(t) + r(t)`, which lie at the
+    # ends or where the derivative, linear in `t`, is 0.
     given = np.asarray(controls, np.float64).reshape(-1, 3, 4)
     # Coordinates count from the start, so that a tube far from 0 keeps its digits.
     points = given[:, :, :3] - given[:, :1, :3]

@@ -20,8 +20,7 @@ __all__ = ["RAY", "balanced", "critical", "intervals", "least", "moved", "powers
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-RAY = np.array([1.0, -1.0, -1.0])
-"""Signs of the squares of r, y, z in the ``g`` of a ray."""
+RAY = np.array([1.0, -1.0, -1.0])  # signs of the squares of r, y, z in the `g` of a ray
 
 _SHIFTS = (0.0, 0.4, -0.3)
 _SPREAD = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 17)  # g often falls to 0 as 1 - u^2 does: u = sin(angle) spreads well

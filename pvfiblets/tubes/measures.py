@@ -9,8 +9,6 @@ import numpy as np
 from pvfiblets.tubes.curves import controls, derivative
 from pvfiblets.tubes.spline_tubes import NodeValues, SplineTubes
 
-__all__ = ["ARC_LENGTH", "RADIUS", "node_slopes", "segment_lengths", "tube_lengths", "with_arc_length", "with_radius"]
-
 RADIUS, ARC_LENGTH = "radius", "arc_length"
 
 _BLOCK = 1 << 15  # segments measured at a time
@@ -40,10 +38,8 @@ def with_radius(tubes: SplineTubes) -> SplineTubes:
 
 
 def with_arc_length(tubes: SplineTubes) -> SplineTubes:
-    """Tubes whose nodes say how far they are along their tube, in the order of its segments, mm.
-
-    A node that is at two places at once, as one that tubes share or at which one closes, becomes a node for each.
-    """
+    """Tubes whose nodes say how far they are along their tube, in the order of its segments, mm."""
+    # A node that is at two places at once, as one that tubes share or at which one closes, becomes a node for each.
     order = np.argsort(tubes.tubes, kind="stable")
     until = np.cumsum(segment_lengths(tubes)[order])
     begin = np.concatenate([np.zeros(1), until])[: len(until)]

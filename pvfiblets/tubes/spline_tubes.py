@@ -25,8 +25,7 @@ Doubles: TypeAlias = npt.NDArray[np.float64]
 Ints: TypeAlias = npt.NDArray[np.int64]
 Bounds: TypeAlias = tuple[float, float, float, float, float, float]
 
-_BLOCK = 1 << 16
-"""Segments handled at a time: their working arrays stay in cache."""
+_BLOCK = 1 << 16  # segments handled at a time: their working arrays stay in cache
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,16 +19,13 @@ import numpy.typing as npt
 
 from .spline_tubes import Doubles, Ints, chord_lengths
 
-__all__ = ["METHODS", "Steps", "derivatives"]
-
 METHODS = ("finite", "catmull-rom", "natural")
 
 _STEEPEST = 3.0
 """How far a derivative may lead along the longer step, in changes of value: a monotone cubic's limit (Fritsch and
 Carlson 1980). Changes in proportion to lengths come nowhere near it."""
 
-_HUGE = 1e300
-"""Slopes end here: a segment's curve takes a few of their sums before its length makes them small."""
+_HUGE = 1e300  # slopes end here: a segment's curve takes a few of their sums before its length makes them small
 
 _SWEEPS = 6
 """Reductions after which a spline's equations are solved. A row's two neighbours weigh at most half of the row itself,
@@ -37,18 +34,12 @@ and every reduction squares that share: 2**-64 after six, however long the line 
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """The steps from node to node of ragged lines.
+    """The steps from node to node of ragged lines."""
 
-    Parameters
-    ----------
-    lengths : ndarray
-        ``(n_nodes,)`` float64, mm: from each node to the next of its line; 0 at each line's last node, which has none.
-    behind, ahead : ndarray
-        ``(n_nodes,)`` int64: the steps that lead to and from each node, as rows of `lengths`. Where there is none, a
-        row whose length is 0. Closed lines go on at their other end.
-    """
-
+    # `(n_nodes,)` float64, mm: from each node to the next of its line; 0 at each line's last node, which has none
     lengths: Doubles
+    # `(n_nodes,)` int64: the steps that lead to and from each node, as rows of `lengths`. Where there is none, a row
+    # whose length is 0. Closed lines go on at their other end.
     behind: Ints
     ahead: Ints
 
@@ -75,14 +66,10 @@ class Steps:
 
 
 def derivatives(values: npt.ArrayLike, steps: Steps, method: str = "finite") -> Doubles:
-    """Derivatives of positions or values at all nodes.
-
-    Notes
-    -----
-    The natural spline's equations for derivatives D are, row by row, ``u D[i-1] + 2 D[i] + (1 - u) D[i+1] =
-    3 (u s[i-1] + (1 - u) s[i])`` with the slopes s of the two chords and the share u of the step ahead in both. They
-    are solved by cyclic reduction of all rows at once.
-    """
+    """Derivatives of positions or values at all nodes."""
+    # The natural spline's equations for derivatives D are, row by row, `u D[i-1] + 2 D[i] + (1 - u) D[i+1] = 3 (u
+    # s[i-1] + (1 - u) s[i])` with the slopes s of the two chords and the share u of the step ahead in both. They are
+    # solved by cyclic reduction of all rows at once.
     if method not in METHODS:
         raise ValueError(f"method is {method!r}, expected one of {', '.join(map(repr, METHODS))}")
     if method == "catmull-rom":

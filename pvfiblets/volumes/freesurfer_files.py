@@ -18,11 +18,9 @@ SURFACES = (
     ".pial.t1", ".white.preaparc",
 )  # fmt: skip
 """Ends of names of surfaces, in lower case: ``lh.pial``."""
-VALUES = (".annot", ".thickness", ".curv", ".sulc")
-"""Ends of names of files with a label or a number for each vertex."""
+VALUES = (".annot", ".thickness", ".curv", ".sulc")  # ends of names of files with a label or a number for each vertex
 
-MOST_LABELS = 1 << 15
-"""Most labels of a table: FreeSurfer's own numbers end at 14175."""
+MOST_LABELS = 1 << 15  # most labels of a table: FreeSurfer's own numbers end at 14175
 _TRIANGLES, _NUMBERS = b"\xff\xff\xfe", b"\xff\xff\xff"
 _QUADS = {b"\xff\xff\xff": 2, b"\xff\xff\xfd": 4}
 """First bytes of older surfaces of quadrangles, and the bytes of a coordinate."""

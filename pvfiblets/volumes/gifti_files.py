@@ -14,8 +14,6 @@ from xml.parsers import expat
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.gzipped import check_ratio
 
-__all__ = ["SUFFIXES", "VALUES", "named_files", "read_gifti"]
-
 SUFFIXES = (".gii", ".gii.gz")
 VALUES = tuple(f".{what}{suffix}" for what in ("label", "shape", "func") for suffix in SUFFIXES)
 """Suffixes of files with numbers for the vertices of a surface in another file."""

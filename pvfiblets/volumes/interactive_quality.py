@@ -12,8 +12,7 @@ from .raycast_options import PROJECTIONS, RaycastOptions
 
 __all__ = ["COARSEST_STEP", "InteractiveQuality"]
 
-COARSEST_STEP = 4.0
-"""Times the step at a quality of a quarter and less; 1 / quality above."""
+COARSEST_STEP = 4.0  # times the step at a quality of a quarter and less; 1 / quality above
 
 LARGEST_STEP = 1e3  # of RaycastOptions
 

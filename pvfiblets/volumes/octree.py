@@ -39,36 +39,25 @@ __all__ = [
     "HOMOGENEOUS", "LEAF", "OVERSHOOT", "SKIP", "VISIT", "Level", "Octree", "build_octree", "flags", "homogeneous",
 ]  # fmt: skip
 
-LEAF = 8
-"""Cells along each side of a leaf: level 3."""
+LEAF = 8  # cells along each side of a leaf: level 3
 
 AT_ONCE = 1 << 22
 """Numbers of a volume's leaves that are brought together along one axis at a time: six bytes each, more or less."""
 
-SKIP, VISIT, HOMOGENEOUS = 0, 1, 2
-"""Actions of rays at a node: nothing, look into it, or take it as its mean."""
+SKIP, VISIT, HOMOGENEOUS = 0, 1, 2  # actions of rays at a node: nothing, look into it, or take it as its mean
 
-OVERSHOOT = 61 / 128
-"""Greatest excess of the tricubic field over the range of its voxels, as a part of that range."""
+OVERSHOOT = 61 / 128  # greatest excess of the tricubic field over the range of its voxels, as a part of that range
 
 Flags = list[npt.NDArray[np.uint8]]
 
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """All nodes of one level: three arrays ``(bx, by, bz)``.
+    """All nodes of one level: three arrays ``(bx, by, bz)``."""
 
-    Parameters
-    ----------
-    least, greatest : ndarray
-        Bounds of the field in each node.
-    mean : ndarray
-        float32, of the trilinear field over the node's cells.
-    """
-
-    least: npt.NDArray[Any]
+    least: npt.NDArray[Any]  # bounds of the field in each node
     greatest: npt.NDArray[Any]
-    mean: npt.NDArray[np.float32]
+    mean: npt.NDArray[np.float32]  # float32, of the trilinear field over the node's cells
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -79,22 +68,13 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class Octree:
-    """A full octree.
+    """A full octree."""
 
-    Parameters
-    ----------
-    levels : tuple of Level
-        The leaves first; node ``(i, j, k)`` of level ``l`` covers the cells from ``leaf * 2^l * (i, j, k)`` on. The
-        last level has one node.
-    leaf : int, default: 8
-        Cells along each side of a leaf.
-    margin : int, default: 1
-        1: bounds hold of the nearest and the trilinear field. 2: of the tricubic field too.
-    """
-
+    # the leaves first; node `(i, j, k)` of level `l` covers the cells from `leaf * 2^l * (i, j, k)` on. The last level
+    # has one node.
     levels: tuple[Level, ...]
-    leaf: int = LEAF
-    margin: int = 1
+    leaf: int = LEAF  # cells along each side of a leaf
+    margin: int = 1  # 1: bounds hold of the nearest and the trilinear field. 2: of the tricubic field too.
 
     @cached_property
     def nbytes(self) -> int:

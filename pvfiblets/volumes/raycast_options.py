@@ -21,8 +21,7 @@ MODES = ("composite", "isosurface", "mip", "local-mip", "minimum", "average")
 """What a ray shows: all that it passes through, a surface, the greatest value, the first peak above a threshold,
 the least value, or the mean one."""
 
-PROJECTIONS = ("mip", "local-mip", "minimum", "average")
-"""Modes that show one value of a ray."""
+PROJECTIONS = ("mip", "local-mip", "minimum", "average")  # modes that show one value of a ray
 
 REFINEMENTS = ("exact", "regula-falsi", "newton", "none")
 """Searches for surfaces: in each cell of eight voxels, or between two steps (paper: equations 3 and 4)."""
@@ -30,8 +29,7 @@ REFINEMENTS = ("exact", "regula-falsi", "newton", "none")
 INTEGRATORS = ("adaptive", "preintegrated", "exponential", "riemann", "simpson", "romberg", "rk4")
 """Methods of integrating the rendering equation over a step."""
 
-MAX_VALUES = 8
-"""Isosurfaces of one volume."""
+MAX_VALUES = 8  # isosurfaces of one volume
 
 MOST_STEPS = 30_000
 """Steps of a ray up to which flat voxels may shorten them: software OpenGL ends a loop after 65,535 turns."""
@@ -39,94 +37,55 @@ MOST_STEPS = 30_000
 DEEPEST, MOST_SHORTER = 16.0, 4.0
 """Optical depth of a step beyond which it is shortened, and to what part of itself at the most."""
 
-LARGEST = (2.0 - 2.0**-23) * 2.0**127
-"""The largest number that float32 holds."""
+LARGEST = (2.0 - 2.0**-23) * 2.0**127  # the largest number that float32 holds
 
 
 @dataclass(frozen=True)
 class RaycastOptions:
     """Options of ray casting.
 
-    Parameters
-    ----------
-    mode : str
-        Of `MODES`.
-    values : tuple of float
-        Where surfaces are, 1 to `MAX_VALUES` of them, for ``'isosurface'``; each ray shows the first that it meets.
-    surfaces : tuple of tuples of 4 floats, optional
-        RGBA from 0 to 1 of each of `values`: then each ray shows all surfaces that it meets, one behind the other.
-    transfer : Transfer, optional
-        Colours and opacities by value, for ``'composite'``.
-    closed : bool
-        Whether the border of the volume, or of its `box`, closes surfaces about values that are at least theirs.
-    threshold : float
-        The least value of a peak, for ``'local-mip'``.
-    low, high : float
-        Range of visible values; lower and higher ones are empty in all modes but ``'isosurface'``.
-    step : float
-        Of a ray, in mean voxel spacings, above 0; :meth:`step_mm` converts it for voxels that are far from cubes.
-        Surfaces and peaks that are found exactly take no steps (:attr:`exact`).
-    jitter : bool
-        Whether each ray starts at a place of its own within the first step: noise takes the place of rings.
-    filter : str
-        Of :data:`pvfiblets.volumes.volume.FILTERS`.
-    refine : str
-        Of `REFINEMENTS`. ``'exact'`` is ``'regula-falsi'`` where the filter is another than ``'trilinear'``.
-    iterations : int
-        Steps of the refinement, 1 to 64.
-    integrator : str
-        Of `INTEGRATORS`. ``'adaptive'`` is ``'preintegrated'`` for steps where one look-up is enough, takes steps in
-        parts where values bend, as at edges from voxel to voxel, and halves others until their halves agree
-        (:mod:`pvfiblets.volumes.steepness`).
-    octree : bool
-        Whether invisible nodes are skipped. It changes no pixel.
-    homogeneous : float
-        Nodes whose values differ by no more are taken as their mean, for ``'composite'``; 0 for none.
-    recon : bool
-        Whether nodes in which neither colour nor opacity changes with the value, by their bounds, are not
-        reconstructed at all but taken as one, for ``'composite'``. It changes no more than rounding does. These and
-        homogeneous ones must make up at least half of the nodes that rays look into, or none is: testing costs more.
-    sparse : int
-        A ray is cast for every so many pixels along each axis first, 1, 2 or 4, and for those between only where
-        what the first ones found differs (section III.D). Things thinner than that may be missed.
-    sparse_threshold : float
-        By how much it may differ: colours and opacities from 0 to 1, values over the range of colours, and the cosine
-        of an angle between normals by its distance from 1.
-    stop : float
-        Opacity at which a ray ends, above 0 and at most 1.
-    box : tuple of float, optional
-        (xmin, xmax, ymin, ymax, zmin, zmax) in voxels: everything outside is cut away.
-
-    Raises
-    ------
-    ValueError
-        If a choice is none or a number is out of its range; the message names it.
-
-    Notes
-    -----
     Source: Lesar, "Real-time ray casting of volumetric data" (2015), section III.
     """
 
-    mode: str = "isosurface"
+    mode: str = "isosurface"  # of `MODES`
+    # where surfaces are, 1 to `MAX_VALUES` of them, for `'isosurface'`; each ray shows the first that it meets
     values: tuple[float, ...] = ()
+    # RGBA from 0 to 1 of each of `values`: then each ray shows all surfaces that it meets, one behind the other
     surfaces: tuple[tuple[float, ...], ...] | None = None
-    transfer: Transfer | None = None
+    transfer: Transfer | None = None  # colours and opacities by value, for `'composite'`
+    # whether the border of the volume, or of its `box`, closes surfaces about values that are at least theirs
     closed: bool = False
-    threshold: float = -math.inf
-    low: float = -math.inf
+    threshold: float = -math.inf  # the least value of a peak, for `'local-mip'`
+    low: float = -math.inf  # range of visible values; lower and higher ones are empty in all modes but `'isosurface'`
     high: float = math.inf
+    # of a ray, in mean voxel spacings, above 0; `step_mm` converts it for voxels that are far from cubes. Surfaces and
+    # peaks that are found exactly take no steps (`exact`).
     step: float = 0.5
+    # whether each ray starts at a place of its own within the first step: noise takes the place of rings
     jitter: bool = False
-    filter: str = "trilinear"
+    filter: str = "trilinear"  # of `pvfiblets.volumes.volume.FILTERS`
+    # of `REFINEMENTS`. `'exact'` is `'regula-falsi'` where the filter is another than `'trilinear'`.
     refine: str = "exact"
-    iterations: int = 5
+    iterations: int = 5  # steps of the refinement, 1 to 64
+    # of `INTEGRATORS`. `'adaptive'` is `'preintegrated'` for steps where one look-up is enough, takes steps in parts
+    # where values bend, as at edges from voxel to voxel, and halves others until their halves agree
+    # (`pvfiblets.volumes.steepness`).
     integrator: str = "adaptive"
-    octree: bool = True
+    octree: bool = True  # whether invisible nodes are skipped. It changes no pixel.
+    # nodes whose values differ by no more are taken as their mean, for `'composite'`; 0 for none
     homogeneous: float = 0.0
+    # whether nodes in which neither colour nor opacity changes with the value, by their bounds, are not reconstructed
+    # at all but taken as one, for `'composite'`. It changes no more than rounding does. These and homogeneous ones must
+    # make up at least half of the nodes that rays look into, or none is: testing costs more.
     recon: bool = True
+    # A ray is cast for every so many pixels along each axis first, 1, 2 or 4, and for those between only where what the
+    # first ones found differs (section III.D). Things thinner than that may be missed.
     sparse: int = 1
+    # by how much it may differ: colours and opacities from 0 to 1, values over the range of colours, and the cosine of
+    # an angle between normals by its distance from 1
     sparse_threshold: float = 0.05
-    stop: float = 0.999
+    stop: float = 0.999  # opacity at which a ray ends, above 0 and at most 1
+    # (xmin, xmax, ymin, ymax, zmin, zmax) in voxels: everything outside is cut away
     box: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
@@ -195,21 +154,12 @@ class RaycastOptions:
         )
 
     def step_mm(self, spacing: npt.ArrayLike, shape: tuple[int, int, int]) -> float:
-        """Return the length of a step, mm.
-
-        Of voxels that are much shorter along one axis than along others, the mean spacing would step over things many
-        of the short ones wide: a step is no longer than one of those, or than `step` of them if that is more, unless
-        a ray through the whole volume took more than `MOST_STEPS` then. Light as dense as fog, where
-        ``'adaptive'`` is to miss no corner, has shorter ones: of an optical depth of `DEEPEST` at most, but no shorter
-        than one by `MOST_SHORTER` of that.
-
-        Parameters
-        ----------
-        spacing : array_like
-            ``(3,)`` mm between voxels along each axis.
-        shape : tuple of int
-            Voxels along each axis.
-        """
+        """Return the length of a step, mm."""
+        # Of voxels that are much shorter along one axis than along others, the mean spacing would step over things many
+        # of the short ones wide: a step is no longer than one of those, or than `step` of them if that is more, unless
+        # a ray through the whole volume took more than `MOST_STEPS` then. Light as dense as fog, where `'adaptive'` is
+        # to miss no corner, has shorter ones: of an optical depth of `DEEPEST` at most, but no shorter than one by
+        # `MOST_SHORTER` of that.
         lengths = np.asarray(spacing, np.float64)
         mean, least = self.step * float(lengths.mean()), max(self.step, 1.0) * float(lengths.min())
         through = float(np.linalg.norm(lengths * shape))

@@ -9,11 +9,9 @@ import numpy.typing as npt
 
 __all__ = ["MOST_TIMES", "evenly"]
 
-MOST_TIMES = 4
-"""Greatest ratio of the even grid's planes along an axis to the uneven one's."""
+MOST_TIMES = 4  # greatest ratio of the even grid's planes along an axis to the uneven one's
 
-EVEN = 1e-6
-"""Tolerance of even planes, as a part of the mean distance."""
+EVEN = 1e-6  # tolerance of even planes, as a part of the mean distance
 
 Array = npt.NDArray[np.float64]
 

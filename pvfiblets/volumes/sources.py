@@ -27,8 +27,7 @@ _EXPECTED = (
 UNIT_LENGTH = 1e-3  # tolerance of a direction's length of 1: headers keep few digits
 
 Array = npt.NDArray[np.float64]
-Found = tuple[npt.NDArray[Any], Array, str]
-"""Numbers, their affine, and a name."""
+Found = tuple[npt.NDArray[Any], Array, str]  # numbers, their affine, and a name
 
 
 def as_raycast_volume(

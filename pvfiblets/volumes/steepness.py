@@ -26,25 +26,21 @@ from .volume import RaycastVolume
 
 __all__ = ["DEEP", "KINKS", "OFF", "PARTS", "UNTRUSTED", "allowed_bends", "largest_bend"]
 
-OFF = 1e-2
-"""Largest error of colours and opacities."""
+OFF = 1e-2  # largest error of colours and opacities
 
 DEEP = 9.0
 """Optical depth of a step beyond which the rest of the light at a ray's end does not follow from its opacity. Steps of
 half a voxel through a table that ends in opacity 1, as most do, have 8.3."""
 
-PARTS = 4
-"""Parts of a step over which values bend: a power of two, so that they add up to it exactly."""
+PARTS = 4  # parts of a step over which values bend: a power of two, so that they add up to it exactly
 
 KINKS = 5.0
 """Bends up to so many times the allowed one need no shorter parts than a step's: at the worst, a twelfth of them is
 left as an error, of either sign."""
 
-UNTRUSTED = -1.0
-"""In place of the allowed bend: a look-up is off even where values do not bend at all."""
+UNTRUSTED = -1.0  # in place of the allowed bend: a look-up is off even where values do not bend at all
 
-MOST = 512
-"""Pairs of values along each side of the table of bends; of a larger table, the least of neighbours counts."""
+MOST = 512  # pairs of values along each side of the table of bends; of a larger table, the least of neighbours counts
 
 Array = npt.NDArray[np.float64]
 

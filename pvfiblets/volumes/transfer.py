@@ -27,8 +27,7 @@ LARGEST_DEPTH = 24.0 * np.log(2.0)
 """Largest optical depth of one unit, 16.6: there alpha is 1 - 2^-24, which float32 hardly tells from 1. Full opacity
 would take an infinite one."""
 
-PREINTEGRATED = 256
-"""Least number of values along each side of a pre-integrated table."""
+PREINTEGRATED = 256  # least number of values along each side of a pre-integrated table
 
 LARGEST_PREINTEGRATED = 1024
 """Largest number of entries of tables that can be pre-integrated: time grows with its third power."""
@@ -36,17 +35,13 @@ LARGEST_PREINTEGRATED = 1024
 EVEN_COLOURS, EVEN_EXTINCTION = 1.0 / 512.0, 1e-3
 """Differences of colours, and their part of extinction, up to which both count as the same."""
 
-PLACES = 4080
-"""Least number of pieces of the finer table that light is calculated from: 16 for each of 255."""
+PLACES = 4080  # least number of pieces of the finer table that light is calculated from: 16 for each of 255
 
-KEPT = 8
-"""Number of cached pre-integrated tables: each takes a moment, and some colours need two."""
+KEPT = 8  # number of cached pre-integrated tables: each takes a moment, and some colours need two
 
-ALLOWED = 1e-3
-"""Difference of light between a stretch and its halves up to which ``'adaptive'`` does not halve it again."""
+ALLOWED = 1e-3  # difference of light between a stretch and its halves up to which `'adaptive'` does not halve it again
 
-FINEST = 64
-"""Parts of two steps below which it does not."""
+FINEST = 64  # parts of two steps below which it does not
 
 Array = npt.NDArray[np.float64]
 
@@ -143,11 +138,9 @@ class Transfer:
         return rgba[..., :3] * (_depth(rgba[..., 3]) / self.unit)[..., None]
 
     def visible_range(self, low: npt.ArrayLike, high: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Return whether anything between two values, themselves included, has an opacity above 0.
-
-        For arrays of bounds, as in :func:`pvfiblets.volumes.octree.flags`; the cost does not depend on the length
-        of the table lies between.
-        """
+        """Return whether anything between two values, themselves included, has an opacity above 0."""
+        # For arrays of bounds, as in `pvfiblets.volumes.octree.flags`; the cost does not depend on the length of the
+        # table lies between.
         first, last = self._places(low), self._places(high)
         # Opacity is linear between entries: it is 0 all through if it is at both ends and at the entries between.
         n = self._opaque_before
@@ -169,11 +162,9 @@ class Transfer:
         )
 
     def even_range(self, low: npt.ArrayLike, high: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Return whether between two values neither colours nor extinction change by more than rounding does.
-
-        For arrays of bounds, as `visible_range`. Colours may change by `EVEN_COLOURS`, extinction by `EVEN_EXTINCTION`
-        of the least of it, all ups and downs added up.
-        """
+        """Return whether between two values neither colours nor extinction change by more than rounding does."""
+        # For arrays of bounds, as `visible_range`. Colours may change by `EVEN_COLOURS`, extinction by
+        # `EVEN_EXTINCTION` of the least of it, all ups and downs added up.
         first, last = self._places(low), self._places(high)
         entries = np.arange(len(self.table))
         colour, depth = self._changes_before
@@ -210,31 +201,14 @@ class Transfer:
         return np.clip(share, 0.0, 1.0) * (len(self.table) - 1)
 
     def preintegrated(self, step: float) -> npt.NDArray[np.float32]:
-        """Colour and opacity of a step along which the value changes linearly, for all pairs of values.
-
-        Parameters
-        ----------
-        step : float
-            mm.
-
-        Returns
-        -------
-        ndarray
-            ``(n, n, 4)`` float32: for the value at the step's front, first, and back, second, each evenly over
-            ``clim``, the RGB, multiplied by opacity, and the opacity. n is at least 256, and such that each entry of
-            the table is among the values. Read-only: it is cached.
-
-        Raises
-        ------
-        ValueError
-            If the step is not finite and above 0, or the table has more than 1024 entries.
-
-        Notes
-        -----
-        The optical depth is exact: over a piece in which alpha is linear, -ln(1 - alpha) has the primitive
-        (1 - alpha) ln(1 - alpha) + alpha. So is what light loses within the step: with u = 1 - exp(-tau), the colour is
-        int c du, piece by piece by parts, so that only exp(-tau), smooth within a piece, is left to a quadrature.
-        """
+        """Return colour and opacity of a step in mm along which the value changes linearly, for all pairs of values."""
+        # (n, n, 4) float32: for the value at the step's front, first, and back, second, each evenly over `clim`, the
+        # RGB, multiplied by opacity, and the opacity. n is at least 256, and such that each entry of the table is among
+        # the values. Read-only: it is cached.
+        #
+        # The optical depth is exact: over a piece in which alpha is linear, -ln(1 - alpha) has the primitive (1 -
+        # alpha) ln(1 - alpha) + alpha. So is what light loses within the step: with u = 1 - exp(-tau), the colour is
+        # int c du, piece by piece by parts, so that only exp(-tau), smooth within a piece, is left to a quadrature.
         if not 0.0 < step < np.inf:
             raise ValueError(f"the step is {step!r} mm; expected a finite length above 0")
         k = len(self.table)
@@ -249,19 +223,9 @@ class Transfer:
     def media(self, least: int = PLACES) -> tuple[npt.NDArray[np.float32], int]:
         """What light of stretches in which the value is linear is calculated from (``shaders/volumes/adaptive.glsl``).
 
-        Parameters
-        ----------
-        least : int
-            Least number of places at which kappa is known; the same number lies between all entries of the table.
-
-        Returns
-        -------
-        media : ndarray
-            ``(2, n, 4)`` float32. First colour and extinction, 1/mm, at places evenly over ``clim``; then the integral
-            of extinction over places from the first on, in two numbers, the second the remainder of the first, its
-            growth to the next place, and 0.
-        places : int
-            From each entry of the table to the next.
+        (2, n, 4) float32, and the number of places from each entry of the table to the next. First colour and
+        extinction, 1/mm, at places evenly over ``clim``; then the integral of extinction over places from the first on,
+        in two numbers, the second the remainder of the first, its growth to the next place, and 0.
         """
         from .preintegration import unit_depths
 

@@ -14,13 +14,11 @@ from pvfiblets.support.value_reference import relative, value_reference
 
 __all__ = ["FILTERS", "RaycastVolume"]
 
-FILTERS = ("nearest", "trilinear", "tricubic")
-"""Reconstructions of the field between voxel centres."""
+FILTERS = ("nearest", "trilinear", "tricubic")  # reconstructions of the field between voxel centres
 
 KEPT = (np.uint8, np.uint16, np.int16, np.float32)
 WIDENED = {"b1": np.uint8, "i1": np.int16, "f2": np.float32}
-SINGULAR = 1e-12
-"""An affine whose columns span less than this part of their lengths' product flattens space."""
+SINGULAR = 1e-12  # an affine whose columns span less than this part of their lengths' product flattens space
 SPAN = (1e-28, 1e38)
 """Between which the values' range must lie: differences of values, and products with them, are taken in float32, which
 ends at 3.4e38 and has few digits, or none on GPUs, below 1.2e-38."""

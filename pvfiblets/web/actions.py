@@ -8,20 +8,19 @@ from typing import Any
 from pvfiblets.web.scene.loading import Cancelled, Watch
 from pvfiblets.web.session.document import LINES
 
-__all__ = ["Actions", "LineActions"]
-
 
 class Actions:
-    """Some of an application's actions.
-
-    Parameters
-    ----------
-    app : Explorer
-        Whose scene and page these act on.
-    """
+    """Some of an application's actions."""
 
     def __init__(self, app: Any) -> None:
-        self._app = app
+        self._app = app  # whose scene and page these act on
+
+    def refresh(self) -> None:
+        """Bring the page's data in step with the scene."""
+
+    def _show(self) -> None:
+        with self._app.state:
+            self.refresh()
 
 
 class LineActions(Actions):

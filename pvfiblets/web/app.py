@@ -56,21 +56,14 @@ SCRIPTS = ("pvfiblets.js", "fields.js", "regions.js", "slices.js", "painting.js"
 
 
 class Explorer(TrameApp):
-    """One session.
-
-    Parameters
-    ----------
-    options : Options
-        Its initial files, and the root that it is confined to.
-    notes : Notes
-        Records files written outside of its temporary folder.
-    """
+    """One session."""
 
     def __init__(self, options: Options, notes: Notes) -> None:
         super().__init__("pvfiblets")
         import pyvista
 
-        self.options, self.notes = options, notes
+        # records files written outside of its temporary folder
+        self.options, self.notes = options, notes  # its initial files, and the root that it is confined to
         self.confined = Confined(options.root)
         self.plotter = pyvista.Plotter(off_screen=True, window_size=(960, 640), shape=VIEWS, border=False)
         ready_views(self.plotter)

@@ -35,10 +35,8 @@ class BackgroundWork(Actions):
         self.tell: Callable[[str], None] = lambda _: None  # called with the opened file's name, "" after it
 
     async def run_in_background(self, name: str, work: Work, what: str, *, cancellable: bool = True) -> Any:
-        """Do what takes long in a thread of its own, with progress; the page goes on.
-
-        One task at a time: others wait, and the page names them.
-        """
+        """Do what takes long in a thread of its own, with progress; the page goes on."""
+        # One task at a time: others wait, and the page names them.
         app = self._app
         loop = asyncio.get_running_loop()
         reported = 0.0

@@ -93,11 +93,9 @@ def _serve(options: Options, folder: Path, key: str, speaker: TextIO) -> None:
 
 
 def listen(server: Any) -> None:
-    """Run a server of trame's on a port of loopback until it is stopped.
-
-    It never stops by itself, as trame's do 300 seconds after the last browser has gone: when a session ends is the
-    gate's to say (:mod:`pvfiblets.web.server.launcher`), which keeps the only clock.
-    """
+    """Run a server of trame's on a port of loopback until it is stopped."""
+    # It never stops by itself, as trame's do 300 seconds after the last browser has gone: when a session ends is the
+    # gate's to say (`pvfiblets.web.server.launcher`), which keeps the only clock.
     server.start(
         port=0,
         host="127.0.0.1",

@@ -31,10 +31,8 @@ def decode(
     tables: Array,
     out: npt.NDArray[np.floating],
 ) -> int:
-    """Decode fiblets into ``out``; returns how many were damaged and left out.
-
-    Arguments are as in `decode_kernels.decode`.
-    """
+    """Decode fiblets into ``out``; returns how many were damaged and left out."""
+    # Arguments are as in `decode_kernels.decode`.
     missed = 0
     for a in range(0, len(fiblets), BATCH):
         some = fiblets[a : a + BATCH], destination[a : a + BATCH]

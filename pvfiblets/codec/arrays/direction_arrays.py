@@ -60,10 +60,8 @@ def encode_directions(
     end_scale: float,
     out: tuple[npt.NDArray[Any], ...],
 ) -> None:
-    """Try to code every slot with direction bytes; arguments are as in `direction_kernels.encode_directions`.
-
-    ``turning`` is that of all points, ``end (m,)`` says which slots end their streamlines, and ``out`` is filled.
-    """
+    """Try to code every slot with direction bytes; arguments are as in `direction_kernels.encode_directions`."""
+    # `turning` is that of all points, `end (m,)` says which slots end their streamlines, and `out` is filled.
     order = np.argsort(-slots[:, 1], kind="stable")
     for a in range(0, len(order), BATCH):
         which = order[a : a + BATCH]

@@ -189,10 +189,8 @@ def encode_lattices(
     at: Ints,
     out: tuple[npt.NDArray[Any], ...],
 ) -> None:
-    """Code slots as planned: ``plan`` is their number of pieces, and ``cuts``.
-
-    ``at`` and ``out`` are as in `lattice_kernels.encode_lattices`.
-    """
+    """Code slots as planned: ``plan`` is their number of pieces, and ``cuts``."""
+    # `at` and `out` are as in `lattice_kernels.encode_lattices`.
     pieces, cuts = plan
     counts = cuts.astype(np.int64)
     slot = np.repeat(np.arange(len(slots)), pieces)

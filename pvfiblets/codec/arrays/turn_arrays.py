@@ -23,24 +23,13 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Turning:
-    """Greatest turns of the segments of a chunk; row ``i`` is about the segment that leads on from point ``i``.
+    """Greatest turns of the segments of a chunk; row ``i`` is about the segment that leads on from point ``i``."""
 
-    Attributes
-    ----------
-    units : numpy.ndarray
-        ``(3, n)`` unit vectors; zeros where there is no segment, or none that has a direction.
-    allowed : numpy.ndarray
-        ``(n,)`` largest distance of the unit vector that is drawn instead; infinite where any will do.
-    first : numpy.ndarray
-        ``(n,)`` the same where a fiblet begins with the segment, though not the streamline; -1 where none should.
-    bends : numpy.ndarray
-        ``(n,)`` distance of the unit vector from the tangent at point ``i``; 0 where that bounds nothing.
-    """
-
-    units: Array
-    allowed: Array
+    units: Array  # `(3, n)` unit vectors; zeros where there is no segment, or none that has a direction
+    allowed: Array  # `(n,)` largest distance of the unit vector that is drawn instead; infinite where any will do
+    # `(n,)` the same where a fiblet begins with the segment, though not the streamline; -1 where none should
     first: Array
-    bends: Array
+    bends: Array  # `(n,)` distance of the unit vector from the tangent at point `i`; 0 where that bounds nothing
 
 
 def turning(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], bound: tuple[float, ...]) -> Turning:

@@ -39,21 +39,11 @@ _DATE = (1980, 1, 1, 0, 0, 0)  # equal sets make equal files
 
 @dataclass(frozen=True)
 class Member:
-    """An array to be written, perhaps in pieces.
+    """An array to be written, perhaps in pieces."""
 
-    Attributes
-    ----------
-    dtype : numpy.dtype
-        Type of its values.
-    shape : tuple of int
-        Its shape.
-    pieces : callable
-        Gives its bytes in C order, piece by piece.
-    """
-
-    dtype: np.dtype[Any]
-    shape: tuple[int, ...]
-    pieces: Callable[[], Iterable[bytes | memoryview]]
+    dtype: np.dtype[Any]  # type of its values
+    shape: tuple[int, ...]  # its shape
+    pieces: Callable[[], Iterable[bytes | memoryview]]  # gives its bytes in C order, piece by piece
 
 
 def array_member(array: npt.NDArray[Any]) -> Member:
@@ -70,10 +60,8 @@ def array_member(array: npt.NDArray[Any]) -> Member:
 def write_archive(
     path: str | os.PathLike[str], header: Mapping[str, Any], members: Mapping[str, Member], *, small: bool = False
 ) -> None:
-    """Write a container; the file appears under its name only when it is whole.
-
-    Where it is `small`, nothing is spent on a header that people can read, or on places where members can be mapped.
-    """
+    """Write a container; the file appears under its name only when it is whole."""
+    # Where it is `small`, nothing is spent on a header that people can read, or on places where members can be mapped.
     size = sum(math.prod(member.shape) * member.dtype.itemsize for member in members.values())
     with replacing(path, size) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         layout: dict[str, Any] = {"separators": (",", ":")} if small else {"indent": 1}

@@ -40,8 +40,7 @@ VERSION = 3
 OF_CODES = 2
 """Version of files that hold records and codes, which older programs read too; that of exact sets is `VERSION`."""
 
-INDEX = "_spatial_index"
-"""Attribute of a set, no field of it: a set that is made of another has other fiblets."""
+INDEX = "_spatial_index"  # attribute of a set, no field of it: a set that is made of another has other fiblets
 INDEX_MEMBERS = ("spatial_index/order.npy", "spatial_index/leaves.npy", "spatial_index/pieces.npy")
 
 CORE = ("anchors", "decoding", "reach", "codes", "ends", "pages")

@@ -18,8 +18,6 @@ from ..point_values import PointValues
 from ..tangents import PIXELS
 from .fiblets_file import index_bytes, is_sharded
 
-__all__ = ["info", "iter_chunks", "read", "verify_file", "write"]
-
 
 def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
     """Decode a whole file; see :func:`pvfiblets.read`."""

@@ -18,8 +18,6 @@ from ..error import CodingError, ErrorTally
 from ..fibletset import FibletSet
 from ..progress import Progress, shown
 
-__all__ = ["compare_file", "measure_file_error"]
-
 
 def measure_file_error(
     fiblets: str | PathLike[str],
@@ -28,10 +26,8 @@ def measure_file_error(
     progress: Progress = False,
     dropped: Counter[str] | None = None,
 ) -> CodingError:
-    """Compare a ``.fiblets`` file with the file it was made from, in bounded memory.
-
-    What reading leaves out of the original is added to `dropped`.
-    """
+    """Compare a ``.fiblets`` file with the file it was made from, in bounded memory."""
+    # What reading leaves out of the original is added to `dropped`.
     total = FibletSet.open(fiblets).n_points
     originals = counting(formats.iter_chunks(original, CHUNK_POINTS), Counter() if dropped is None else dropped)
     return compare_file(originals, total, fiblets, progress)

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from ...streamlines import Streamlines
     from ..fibletset import FibletSet
 
-__all__ = ["open_lines"]
-
 
 def open_lines(path: str | PathLike[str]) -> FibletSet | Streamlines:
     """Map a ``.fiblets`` file, or read one of another format, with a warning of what reading left out."""

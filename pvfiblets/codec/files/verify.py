@@ -14,8 +14,6 @@ from ..progress import Progress
 from .fiblets_format import verify_file
 from .file_error import measure_file_error
 
-__all__ = ["VerificationError", "refuse_broken_promise", "verified"]
-
 
 class VerificationError(FibletsError):
     """A file is damaged, or farther from its original than it promises."""

@@ -12,8 +12,6 @@ from ..capsules import MARGIN
 from ..jit import kernel, parallel_kernel
 from ..layout import END_BITS, END_LEVELS
 
-__all__ = ["capsule", "capsule_radius", "end_part", "end_word", "leaving"]
-
 _MASK = (1 << END_BITS) - 1
 
 
@@ -65,11 +63,9 @@ def capsule_radius(points: Any, a: int, b: int, bx: float, by: float, bz: float)
 
 @kernel
 def capsule(decoded: Any, a: int, b: int, end: int, following: Any, end_scale: float) -> Any:
-    """Radius (mm) and word of ``ends`` of the fiblet that decodes to ``decoded[a:b]``.
-
-    ``following`` is ``(3,)``: the next fiblet's decoded anchor, mm, read unless ``end`` says that the fiblet ends its
-    streamline; the word is 0 where it does not.
-    """
+    """Radius (mm) and word of ``ends`` of the fiblet that decodes to ``decoded[a:b]``."""
+    # `following` is `(3,)`: the next fiblet's decoded anchor, mm, read unless `end` says that the fiblet ends its
+    # streamline; the word is 0 where it does not.
     if not end:
         return capsule_radius(decoded, a, b, following[0], following[1], following[2]), 0
     x, y, z = decoded[a, 0], decoded[a, 1], decoded[a, 2]
@@ -82,11 +78,9 @@ def capsule(decoded: Any, a: int, b: int, end: int, following: Any, end_scale: f
 
 @parallel_kernel
 def leaving(points: Any, starts: Any, ends: Any, radius: Any) -> Any:
-    """``(m,)`` bool: fiblets with a point outside of the capsule.
-
-    ``points`` are decoded points ``(n, 3)`` float64; fiblet ``f`` has those from ``starts[f]`` to ``starts[f + 1]``,
-    and its capsule leads from the first of them to ``ends[f]`` with ``radius[f]``, mm.
-    """
+    """``(m,)`` bool: fiblets with a point outside of the capsule."""
+    # `points` are decoded points `(n, 3)` float64; fiblet `f` has those from `starts[f]` to `starts[f + 1]`, and its
+    # capsule leads from the first of them to `ends[f]` with `radius[f]`, mm.
     found = np.zeros(len(radius), np.bool_)
     for f in numba.prange(len(radius)):
         found[f] = _widest(points, starts[f], starts[f + 1], ends[f, 0], ends[f, 1], ends[f, 2]) > radius[f]

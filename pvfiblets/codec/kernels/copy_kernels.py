@@ -22,10 +22,8 @@ __all__ = ["copy_anchors", "copy_codes", "copy_decoding", "copy_reach"]
 def copy_anchors(
     anchors: Any, low: Any, fine: bool, first: Any, which: Any, shift: Any, at: Any, rank: int, pages: Any, out: Any
 ) -> None:
-    """Anchors moved by ``shift`` ``(n, 3) int64`` whole units; with ``fine`` the upper halves of 32-bit anchors.
-
-    ``rank`` is that of the first copy, ``pages`` the result's page table.
-    """
+    """Anchors moved by ``shift`` ``(n, 3) int64`` whole units; with ``fine`` the upper halves of 32-bit anchors."""
+    # `rank` is that of the first copy, `pages` the result's page table.
     for m in numba.prange(len(which)):
         begin = first[which[m]]
         for k in range(at[m + 1] - at[m]):
@@ -57,11 +55,9 @@ def copy_anchors_low(low: Any, first: Any, which: Any, shift: Any, at: Any, out:
 def copy_decoding(
     decoding: Any, within: Any, first: Any, which: Any, at: Any, codes_at: Any, points_at: Any, pages: Any, out: Any
 ) -> None:
-    """Decoding words that point to the copies' own codes and points.
-
-    ``within`` is ``(n_fiblets, 2) int64``: code byte and point at which each of the pool's fiblets starts, counted from
-    its streamline's first; ``codes_at`` and ``points_at`` ``(n,)`` where the copies start in the result.
-    """
+    """Decoding words that point to the copies' own codes and points."""
+    # `within` is `(n_fiblets, 2) int64`: code byte and point at which each of the pool's fiblets starts, counted from
+    # its streamline's first; `codes_at` and `points_at` `(n,)` where the copies start in the result.
     for m in numba.prange(len(which)):
         begin = first[which[m]]
         for k in range(at[m + 1] - at[m]):

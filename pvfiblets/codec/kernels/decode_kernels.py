@@ -93,10 +93,8 @@ def _decode_plain(a: Any, h: float, codes: Any, at: int, n: int, origin: Any, p:
 @kernel
 def decode_one(f: int, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any,
                out: Any, row: int) -> int:  # fmt: skip
-    """Decode fiblet `f` into ``out`` from `row` on, in the terms of :func:`decode`.
-
-    Returns the number of its points; 0, and nothing is written, if its record points beyond the arrays.
-    """
+    """Decode fiblet `f` into ``out`` from `row` on, in the terms of :func:`decode`."""
+    # Returns the number of its points; 0, and nothing is written, if its record points beyond the arrays.
     anchors, decoding, codes, code_base = arrays
     lo, hi, lattice = steps
     w0, w1 = anchors[f, 0], anchors[f, 1]

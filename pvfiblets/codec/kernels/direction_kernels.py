@@ -36,12 +36,10 @@ _CELL = CELLS / (2.0 * EXTENT)
 
 @parallel_kernel
 def scan(points: Any, offsets: Any, found: Any) -> None:
-    """Bounds, longest squared segment and farthest last fiblet, by thousands of streamlines.
-
-    ``found`` is ``(ceil(n_streamlines / 1024), 8)`` float64: least x, y, z; greatest x, y, z; longest segment
-    squared; largest distance along an axis from the last point of a streamline to one of the last 60. A coordinate
-    that is not finite makes the row's bounds infinite.
-    """
+    """Bounds, longest squared segment and farthest last fiblet, by thousands of streamlines."""
+    # `found` is `(ceil(n_streamlines / 1024), 8)` float64: least x, y, z; greatest x, y, z; longest segment squared;
+    # largest distance along an axis from the last point of a streamline to one of the last 60. A coordinate that is not
+    # finite makes the row's bounds infinite.
     n = len(offsets) - 1
     for row in numba.prange(len(found)):
         for axis in range(3):

@@ -10,8 +10,6 @@ import numpy as np
 
 from ..jit import kernel, parallel_kernel
 
-__all__ = ["add_up", "distances"]
-
 
 @parallel_kernel
 def distances(true: Any, drawn: Any, single: bool, distance: Any) -> None:

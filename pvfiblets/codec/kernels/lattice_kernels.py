@@ -187,11 +187,9 @@ def plan_lattices(
     size: Any,
     cuts: Any,
 ) -> None:
-    """Plan the slots named in ``wanted``.
-
-    Fills ``pieces (k,)`` and ``size (k,)`` (bytes of codes) and, where a slot's points stand in ``cuts (n_points,)``,
-    the numbers of points of its pieces. See :func:`.reference.plan_lattice`.
-    """
+    """Plan the slots named in ``wanted``."""
+    # Fills `pieces (k,)` and `size (k,)` (bytes of codes) and, where a slot's points stand in `cuts (n_points,)`, the
+    # numbers of points of its pieces. See `.reference.plan_lattice`.
     for w in numba.prange(len(wanted)):
         slot = wanted[w]
         first, n = slots[slot, 0], slots[slot, 1]
@@ -211,11 +209,9 @@ def _put(codes: Any, at: int, value: int, width: int) -> None:
 
 @kernel
 def _encode(true: Any, a: int, b: int, h: float, codes: Any, at: int, turns: Any) -> Any:
-    """Code one piece at ``codes[at:]``; returns kind, shape, step, cap and the number of bytes written.
-
-    Its anchor stands in the second of ``turns``, where its other points are filled in; the edge is halved further than
-    directions ask for as long as that costs no byte.
-    """
+    """Code one piece at ``codes[at:]``; returns kind, shape, step, cap and the number of bytes written."""
+    # Its anchor stands in the second of `turns`, where its other points are filled in; the edge is halved further than
+    # directions ask for as long as that costs no byte.
     if b - a == 1:
         return DIRECTION, 0, 0, 0, 0
     decoded = turns[1]
@@ -270,12 +266,9 @@ def encode_lattices(
     at: Any,
     out: Any,
 ) -> None:
-    """Code the slots named in ``wanted`` as planned.
-
-    ``at`` is ``(k, 2)``: first fiblet and first code byte of each slot in the arrays of ``out``: ``codes``, ``shape``,
-    ``step``, ``cap``, ``kind``, ``count``, ``code_start``, ``point_start``, ``radius`` and ``end_words``, one row a
-    fiblet.
-    """
+    """Code the slots named in ``wanted`` as planned."""
+    # `at` is `(k, 2)`: first fiblet and first code byte of each slot in the arrays of `out`: `codes`, `shape`, `step`,
+    # `cap`, `kind`, `count`, `code_start`, `point_start`, `radius` and `end_words`, one row a fiblet.
     codes, shape, step, cap, kind, counts, code_start, point_start, radius, end_words = out
     for w in numba.prange(len(wanted)):
         slot = wanted[w]

@@ -11,8 +11,6 @@ import numpy as np
 from ..jit import kernel, parallel_kernel
 from ..tangents import LEAST_SUM, ONE_POINT
 
-__all__ = ["direction", "tangent_angles", "unit"]
-
 
 @kernel
 def direction(points: Any, i: int) -> Any:

@@ -104,11 +104,9 @@ def _next_slot(points: Any, a: int, stop: int, bound: Any) -> int:
 
 @parallel_kernel
 def cut(points: Any, offsets: Any, bound: Any, per: Any, at: Any, slots: Any) -> None:
-    """Cut streamlines into slots of at most 60 points; see :func:`.turn_reference.cut`.
-
-    Called twice: with an empty ``slots``, to fill ``per (n_streamlines,)`` with the number of slots of each streamline;
-    and with ``at (n_streamlines,)``, the first slot of each, to fill ``slots (m, 2)`` with first points and counts.
-    """
+    """Cut streamlines into slots of at most 60 points; see :func:`.turn_reference.cut`."""
+    # Called twice: with an empty `slots`, to fill `per (n_streamlines,)` with the number of slots of each streamline;
+    # and with `at (n_streamlines,)`, the first slot of each, to fill `slots (m, 2)` with first points and counts.
     for s in numba.prange(len(offsets) - 1):
         a = offsets[s]
         found = 0
@@ -123,10 +121,8 @@ def cut(points: Any, offsets: Any, bound: Any, per: Any, at: Any, slots: Any) ->
 
 @kernel
 def excess(units: Any, a: int, b: int, decoded: Any, following: Any, leads: bool) -> float:
-    """Greatest ratio of a turn to its bound, over the segments that lead on from the fiblet ``decoded[a:b]``.
-
-    ``leads``: a segment leads from the last of them to ``following``.
-    """
+    """Greatest ratio of a turn to its bound, over the segments that lead on from the fiblet ``decoded[a:b]``."""
+    # `leads`: a segment leads from the last of them to `following`.
     worst = 0.0
     for i in range(a, b if leads else b - 1):
         allowed = units[i, 3]
@@ -145,10 +141,8 @@ def excess(units: Any, a: int, b: int, decoded: Any, following: Any, leads: bool
 
 @kernel
 def _cosine(points: Any, i: int, one_point: float) -> Any:
-    """Cosine of the turn at point ``i``, and the length of the segment from it on.
-
-    Where a segment has no direction, that of a turn whose tangent's sum is as long: that of one unit vector.
-    """
+    """Cosine of the turn at point ``i``, and the length of the segment from it on."""
+    # Where a segment has no direction, that of a turn whose tangent's sum is as long: that of one unit vector.
     ax, ay, az, before = direction(points, i - 1)
     bx, by, bz, length = direction(points, i)
     if before <= one_point or length <= one_point:
@@ -158,15 +152,13 @@ def _cosine(points: Any, i: int, one_point: float) -> Any:
 
 @kernel
 def within(points: Any, first: int, n: int, follows: Any, bound: Any, step: float, apart: float, least: float) -> bool:
-    """Whether no segment of a slot can be turned too far: told of nearly all direction codes by few figures.
-
-    ``apart`` is the largest distance of a decoded point from its original, the next slot's first included. All segments
-    drawn have the length ``step``, but for the one to the next slot. Turns within the slot have cosines of at least
-    ``least``. True is certain; for False, :func:`excess` decides.
-
-    A segment drawn as ``e`` instead of ``d`` has its unit vector turned by at most ``2 |e - d| / (|d| + |e|)``, and
-    ``|e - d|`` is at most twice ``apart``. Of a turn of cosine ``c`` the tangent's sum is ``sqrt(2 + 2 c)`` long.
-    """
+    """Whether no segment of a slot can be turned too far: told of nearly all direction codes by few figures."""
+    # `apart` is the largest distance of a decoded point from its original, the next slot's first included. All segments
+    # drawn have the length `step`, but for the one to the next slot. Turns within the slot have cosines of at least
+    # `least`. True is certain; for False, `excess` decides.
+    #
+    # A segment drawn as `e` instead of `d` has its unit vector turned by at most `2 |e - d| / (|d| + |e|)`, and `|e -
+    # d|` is at most twice `apart`. Of a turn of cosine `c` the tangent's sum is `sqrt(2 + 2 c)` long.
     if n < 3:
         return False
     one_point = ONE_POINT * bound[0]

@@ -39,74 +39,39 @@ Bounds = tuple[float, float, float, float, float, float]
 
 @dataclass(frozen=True)
 class StoredFile:
-    """A file of the set.
+    """A file of the set."""
 
-    Attributes
-    ----------
-    name : str
-        Without a folder.
-    bytes : int
-    sha256 : str
-    """
-
-    name: str
+    name: str  # without a folder
     bytes: int
     sha256: str
 
 
 @dataclass(frozen=True)
 class Shard:
-    """One shard.
-
-    Attributes
-    ----------
-    fiblets, ids : StoredFile
-    streamlines, points, n_fiblets : int
-    bounds : tuple of float
-        Of its points ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm.
-    length_mm : dict of str to float
-        ``mean, max`` over its streamlines.
-    """
+    """One shard."""
 
     fiblets: StoredFile
     ids: StoredFile
     streamlines: int
     points: int
     n_fiblets: int
-    bounds: Bounds
-    length_mm: dict[str, float] = field(default_factory=dict)
+    bounds: Bounds  # of its points `(xmin, xmax, ymin, ymax, zmin, zmax)`, mm
+    length_mm: dict[str, float] = field(default_factory=dict)  # `mean, max` over its streamlines
 
 
 @dataclass(frozen=True)
 class Manifest:
-    """The set that the shards are parts of.
+    """The set that the shards are parts of."""
 
-    Attributes
-    ----------
-    streamlines, points, n_fiblets : int
-        Of all shards.
-    promise_mm : float
-        As :attr:`.FibletSet.points_promise`: 0 where every bit of the points is kept.
-    bounds : tuple of float
-        Of the original points, mm.
-    groups : dict of str to int
-        How many members each group has.
-    dropped : dict of str to int
-        What reading the source left out, by reason.
-    shards : tuple of Shard
-    thinned : Shard or None
-        An even share of all streamlines.
-    """
-
-    streamlines: int
+    streamlines: int  # of all shards
     points: int
     n_fiblets: int
-    promise_mm: float
-    bounds: Bounds
-    groups: dict[str, int]
-    dropped: dict[str, int]
+    promise_mm: float  # as `.FibletSet.points_promise`: 0 where every bit of the points is kept
+    bounds: Bounds  # of the original points, mm
+    groups: dict[str, int]  # how many members each group has
+    dropped: dict[str, int]  # what reading the source left out, by reason
     shards: tuple[Shard, ...]
-    thinned: Shard | None = None
+    thinned: Shard | None = None  # an even share of all streamlines
 
     def to_json(self) -> str:
         """Return the file's text."""

@@ -27,8 +27,7 @@ __all__ = ["Cache", "Folder", "Remote", "store_at"]
 
 PIECE = 1 << 22
 TRIES = 5
-PAUSE = 0.5
-"""Seconds before the second try; each further one waits twice as long."""
+PAUSE = 0.5  # seconds before the second try; each further one waits twice as long
 
 
 def store_at(place: str | PathLike[str], cache: Cache | None = None, **options: Any) -> Folder | Remote:
@@ -41,12 +40,7 @@ def store_at(place: str | PathLike[str], cache: Cache | None = None, **options: 
 
 
 class Folder:
-    """Files of a folder on this machine.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """Files of a folder on this machine."""
 
     def __init__(self, path: Path) -> None:
         self.name = os.fspath(path)
@@ -105,10 +99,8 @@ class Cache:
         return path
 
     def make_room(self, needed: int) -> None:
-        """Remove the least recently used files until the given number of bytes fits.
-
-        A set that has a file mapped goes on reading it: its name goes, its bytes stay until it is closed.
-        """
+        """Remove the least recently used files until the given number of bytes fits."""
+        # A set that has a file mapped goes on reading it: its name goes, its bytes stay until it is closed.
         files = []
         for path in self.folder.iterdir():
             try:
@@ -129,23 +121,7 @@ class Cache:
 
 
 class Remote:
-    """Files at an address.
-
-    Parameters
-    ----------
-    url : str
-        As fsspec takes it.
-    cache : Cache
-    wait : callable
-        Takes the seconds to wait for before another try.
-    **options
-        Of the file system.
-
-    Raises
-    ------
-    ImportError
-        If fsspec, or its package for this type of address, is not installed.
-    """
+    """Files at an address."""
 
     def __init__(self, url: str, cache: Cache, wait: Callable[[float], None] = time.sleep, **options: Any) -> None:
         try:
@@ -154,7 +130,8 @@ class Remote:
             raise ImportError(
                 f"{url}: addresses are read by fsspec, which is not installed: pip install pvfiblets[cluster]"
             ) from error
-        self.name, self._url, self._cache, self._wait = url, url.rstrip("/"), cache, wait
+        # takes the seconds to wait for before another try
+        self.name, self._url, self._cache, self._wait = url, url.rstrip("/"), cache, wait  # as fsspec takes it
         self._system = fsspec.filesystem(urlsplit(url).scheme, **options)
 
     def read(self, name: str) -> bytes:

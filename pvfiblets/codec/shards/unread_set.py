@@ -309,19 +309,7 @@ for _name in ("anchors", "decoding", "reach", "codes", "ends", "pages"):
 
 
 class CodesOfShards:
-    """Codes of one per-point array, in the order in which points are coded; an array for NumPy, read when it is.
-
-    Parameters
-    ----------
-    whole : UnreadSet
-    name : str
-    dtype : numpy.dtype
-
-    Attributes
-    ----------
-    dtype : numpy.dtype
-    shape : tuple of int
-    """
+    """Codes of one per-point array, in the order in which points are coded; an array for NumPy, read when it is."""
 
     ndim = 1
 

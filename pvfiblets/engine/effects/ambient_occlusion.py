@@ -13,8 +13,7 @@ from .screen import ScreenEffect
 
 __all__ = ["MAX_SAMPLES", "AmbientOcclusionPass"]
 
-MAX_SAMPLES = 256
-"""Pixels looked at around each; more change nothing that 8 bits can show."""
+MAX_SAMPLES = 256  # pixels looked at around each; more change nothing that 8 bits can show
 
 GAIN, BIAS = 6.0, 0.1
 """A wall as high as the ball, along one side of a line, takes about half of the light with a gain of 6. What rises
@@ -22,12 +21,7 @@ over a line by less than 6 degrees does not count: neighbours in a flat bundle a
 
 
 class AmbientOcclusionPass(ScreenEffect):
-    """Openness of each pixel of a G-buffer.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    """
+    """Openness of each pixel of a G-buffer."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         super().__init__(ctx, {"gain": GAIN, "bias": BIAS})

@@ -12,22 +12,11 @@ Viewport = tuple[int, int, int, int]
 
 
 class Accumulation(PicturePasses):
-    """Adds pictures up in float32, and draws their mean.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Current, as for every method.
-
-    Attributes
-    ----------
-    samples : int
-        Pictures that have been added.
-    """
+    """Adds pictures up in float32, and draws their mean."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         super().__init__(ctx, {})
-        self.samples = 0
+        self.samples = 0  # pictures that have been added
 
     def restart(self) -> None:
         """Begin anew with the next picture."""

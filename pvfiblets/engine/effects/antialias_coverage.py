@@ -18,37 +18,21 @@ from .picture_passes import Attachment, PicturePasses
 
 __all__ = ["Coverage", "SmoothedLines"]
 
-TILE = 32
-"""Pixels of the side of the squares that are looked at, or are not since no line is near."""
+TILE = 32  # pixels of the side of the squares that are looked at, or are not since no line is near
 
 
 @dataclass(frozen=True)
 class SmoothedLines:
-    """What one drawable shows of a picture.
+    """What one drawable shows of a picture."""
 
-    Attributes
-    ----------
-    buffer : GBuffer
-        With ``edges``, of the viewport's size.
-    narrower : float
-        Excess of the drawn width over the line's, in pixels: lines below one pixel are drawn one pixel wide.
-    rectangle : tuple of 4 ints
-        x, y, width, height of the part of the viewport that it can be in.
-    """
-
-    buffer: GBuffer
+    buffer: GBuffer  # with `edges`, of the viewport's size
+    # excess of the drawn width over the line's, in pixels: lines below one pixel are drawn one pixel wide
     narrower: float
-    rectangle: tuple[int, int, int, int]
+    rectangle: tuple[int, int, int, int]  # x, y, width, height of the part of the viewport that it can be in
 
 
 class Coverage(PicturePasses):
-    """Smooths edges in one context.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Current, as for every method. Nothing is made on it until a picture is smoothed.
-    """
+    """Smooths edges in one context."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         super().__init__(ctx, {"tile": TILE})

@@ -14,39 +14,23 @@ import numpy.typing as npt
 
 from .projection import Projection
 
-__all__ = ["STEPS", "TILE", "WIDEST", "Focus", "disc_areas", "distance_of"]
-
-WIDEST = 64.0
-"""Pixels: the greatest radius of a disc, as a pixel reads all pixels whose discs may reach it."""
+WIDEST = 64.0  # pixels: the greatest radius of a disc, as a pixel reads all pixels whose discs may reach it
 
 STEPS = 16
 """Radii a pixel, in the table of the pixels that discs cover; the number is linear between halves of a pixel's width,
 and few distances of pixels from a centre lie between two steps."""
 
-TILE = 8
-"""Pixels of the side of a square that stores how far discs reach into it."""
+TILE = 8  # pixels of the side of a square that stores how far discs reach into it
 
 
 @dataclass(frozen=True)
 class Focus:
-    """Settings of a lens.
+    """Settings of a lens."""
 
-    Parameters
-    ----------
-    distance : float
-        mm from the viewer's plane to the plane in focus; above 0.
-    aperture : float
-        mm: the lens's diameter. In a parallel view it is that of a lens at the viewer's place.
-    max_blur : float
-        Pixels, 1 to `WIDEST`: no disc has a greater radius.
-    darkening : float
-        0 to 1: the share of light lost by pixels with the widest disc.
-    """
-
-    distance: float
-    aperture: float
-    max_blur: float
-    darkening: float = 0.0
+    distance: float  # mm from the viewer's plane to the plane in focus; above 0
+    aperture: float  # mm: the lens's diameter. In a parallel view it is that of a lens at the viewer's place.
+    max_blur: float  # pixels, 1 to `WIDEST`: no disc has a greater radius
+    darkening: float = 0.0  # 0 to 1: the share of light lost by pixels with the widest disc
 
     def uniforms(self, lens: Projection) -> dict[str, object]:
         """Return what ``shaders/effects/picture/blur.frag`` asks for."""

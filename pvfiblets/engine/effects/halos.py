@@ -12,20 +12,13 @@ from .screen import ScreenEffect
 
 __all__ = ["WIDEST", "HaloPass"]
 
-WIDEST = 24.0
-"""Pixels of the finished picture: a halo of more, of a line near the viewer, is drawn with so many."""
+WIDEST = 24.0  # pixels of the finished picture: a halo of more, of a line near the viewer, is drawn with so many
 
-TILE = 8
-"""Pixels of a tile's side: as wide as a usual halo, so that few tiles are looked into."""
+TILE = 8  # pixels of a tile's side: as wide as a usual halo, so that few tiles are looked into
 
 
 class HaloPass(ScreenEffect):
-    """Pixels of the halos of a G-buffer's lines, and their depths.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    """
+    """Pixels of the halos of a G-buffer's lines, and their depths."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         super().__init__(ctx, {"tile": TILE})

@@ -12,17 +12,11 @@ from .screen import ScreenEffect
 
 __all__ = ["OutlinePass"]
 
-ROW = 4096
-"""Streamlines in a row of the texture: below every driver's limit."""
+ROW = 4096  # streamlines in a row of the texture: below every driver's limit
 
 
 class OutlinePass(ScreenEffect):
-    """Pixels of the outline of chosen streamlines.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    """
+    """Pixels of the outline of chosen streamlines."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         super().__init__(ctx, {})

@@ -23,42 +23,24 @@ from .tone import Tone
 
 __all__ = ["FAINTEST", "Attachment", "PictureEffects", "SeenThrough"]
 
-FAINTEST = 0.02
-"""Opacity below which things that one sees something through are not what one looks at."""
+FAINTEST = 0.02  # opacity below which things that one sees something through are not what one looks at
 
 _LARGEST = float(np.finfo(np.float32).max)
 
 
 @dataclass(frozen=True, eq=False)
 class SeenThrough:
-    """A G-buffer of something that hides nothing, but lies in focus or out of it.
+    """A G-buffer of something that hides nothing, but lies in focus or out of it."""
 
-    Attributes
-    ----------
-    depth : moderngl.Texture
-        Where it begins, as keys.
-    lights : moderngl.Texture, optional
-        Colour and opacity, if they differ by pixel; opacities below `FAINTEST` do not count.
-    positions : moderngl.Texture, optional
-        With `values`: place and value by pixel; others do not count.
-    values : tuple of 2 floats
-        Least and greatest value that counts.
-    """
-
-    depth: moderngl.Texture
+    depth: moderngl.Texture  # where it begins, as keys
+    # colour and opacity, if they differ by pixel; opacities below `FAINTEST` do not count
     lights: moderngl.Texture | None = None
-    positions: moderngl.Texture | None = None
-    values: tuple[float, float] = (-math.inf, math.inf)
+    positions: moderngl.Texture | None = None  # with `values`: place and value by pixel; others do not count
+    values: tuple[float, float] = (-math.inf, math.inf)  # least and greatest value that counts
 
 
 class PictureEffects(PicturePasses):
-    """Effects on pictures in one context.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Current, as for every method. Nothing is made on it until a picture is changed.
-    """
+    """Effects on pictures in one context."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         super().__init__(ctx, {"steps": float(STEPS), "tile": TILE})

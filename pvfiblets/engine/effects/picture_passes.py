@@ -14,28 +14,16 @@ from ..gl.bindings import FIRST_UNIT
 from ..gl.moderngl_extras import GLExtras
 from ..gl.shaders import Programs
 
-__all__ = ["Attachment", "PicturePasses", "bytes_of"]
-
 _BYTES = {"f1": 1, "f4": 4, "u4": 4}
 
 
 @dataclass(frozen=True)
 class Attachment:
-    """A texture of somebody else's framebuffer.
+    """A texture of somebody else's framebuffer."""
 
-    Attributes
-    ----------
-    name : int
-        OpenGL's.
-    samples : int
-        Per pixel; 0 for a plain texture.
-    floats : bool
-        Whether its colours are floats, not bytes.
-    """
-
-    name: int
-    samples: int
-    floats: bool = False
+    name: int  # OpenGL's
+    samples: int  # per pixel; 0 for a plain texture
+    floats: bool = False  # whether its colours are floats, not bytes
 
     def features(self, *, alike: bool = False) -> list[str]:
         """Return features of shaders that read it; `alike`: all samples of a pixel are the same."""
@@ -45,12 +33,7 @@ class Attachment:
 class PicturePasses:
     """Programs, textures and framebuffers of passes over a picture.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Current, as for every method. Nothing is made on it until a picture is changed.
-    constants : mapping
-        Values of ``{{ name }}`` in the shaders.
+    Nothing is made on the context until a picture is changed.
     """
 
     def __init__(self, ctx: moderngl.Context, constants: Mapping[str, object]) -> None:
@@ -74,10 +57,8 @@ class PicturePasses:
 
     @contextmanager
     def _onto(self, attachment: Attachment, viewport: tuple[int, int, int, int]) -> Iterator[moderngl.Framebuffer]:
-        """Lend what draws into a part of somebody else's texture, within :meth:`_plain_state`.
-
-        The framebuffer is kept, its attachment is not: its owner may delete it, and its name may be used again.
-        """
+        """Lend what draws into a part of somebody else's texture, within :meth:`_plain_state`."""
+        # The framebuffer is kept, its attachment is not: its owner may delete it, and its name may be used again.
         if self._lent is None:
             x, y, width, height = viewport
             self._lent = self._ctx.framebuffer([self._outside(attachment, 4, (x + width, y + height))])

@@ -7,30 +7,16 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Projection"]
-
 # 1 - window depth = f stands in the third place: NDC depth is 2 * depth - 1 = 1 - 2 * f.
 _FROM_COMPLEMENT = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, -2.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
 
 
 @dataclass(frozen=True, eq=False)
 class Projection:
-    """A picture's size and projection.
+    """A picture's size and projection."""
 
-    Parameters
-    ----------
-    size : tuple of int
-        Width and height in pixels.
-    projection : array_like
-        ``(4, 4)`` float64: view coordinates (mm, the viewer at the origin, looking along -z) to clip coordinates.
-
-    Raises
-    ------
-    ValueError
-        If the projection is not a finite (4, 4) matrix that can be inverted.
-    """
-
-    size: tuple[int, int]
+    size: tuple[int, int]  # width and height in pixels
+    # `(4, 4)` float64: view coordinates (mm, the viewer at the origin, looking along -z) to clip coordinates
     projection: npt.NDArray[np.float64]
     pixel_to_view: npt.NDArray[np.float64] = field(init=False, repr=False)
     """``(4, 4)``: (x, y in [-1, 1], 1 - window depth, 1) to view coordinates, homogeneous, largest entry 1."""
@@ -45,10 +31,8 @@ class Projection:
 
     @property
     def scale(self) -> tuple[float, float, float]:
-        """(k, w0, w1): a mm at a distance (mm) from the viewer's plane is ``k / (w0 + w1 * distance)`` pixels.
-
-        Measured up the picture, at its middle.
-        """
+        """(k, w0, w1): a mm at a distance (mm) from the viewer's plane is ``k / (w0 + w1 * distance)`` pixels."""
+        # Measured up the picture, at its middle.
         k = 0.5 * self.size[1] * float(np.linalg.norm(self.projection[1, :3]))
         return k, float(self.projection[3, 3]), -float(self.projection[3, 2])
 

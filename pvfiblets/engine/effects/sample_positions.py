@@ -24,16 +24,13 @@ import numpy.typing as npt
 
 __all__ = ["CENTRED", "MOST", "energy_distance", "sample_positions"]
 
-MOST = 256
-"""Samples: with 256, the error is below one level of eight bits at nearly all edges."""
+MOST = 256  # samples: with 256, the error is below one level of eight bits at nearly all edges
 
-CENTRED = 8
-"""Samples from which on one of them is the pixel's middle: fewer would be a worse picture by it."""
+CENTRED = 8  # samples from which on one of them is the pixel's middle: fewer would be a worse picture by it
 
 STEPS = 120
 GOLDEN = (5.0**0.5 - 1.0) / 2.0
-WITHIN = 0.5214054331647207
-"""Mean distance of two points of a unit square."""
+WITHIN = 0.5214054331647207  # mean distance of two points of a unit square
 
 Array = npt.NDArray[np.float64]
 

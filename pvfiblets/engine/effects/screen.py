@@ -13,19 +13,9 @@ from ..gl.moderngl_extras import GLExtras
 from ..gl.queries import Timers
 from ..gl.shaders import Programs
 
-__all__ = ["ScreenEffect"]
-
 
 class ScreenEffect:
-    """Base of the effects: keeps programs and textures, and what the last picture was made of.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Current, as for every other method.
-    constants : mapping
-        Values of ``{{ name }}`` in the shaders.
-    """
+    """Base of the effects: keeps programs and textures, and what the last picture was made of."""
 
     def __init__(self, ctx: moderngl.Context, constants: Mapping[str, object]) -> None:
         self._ctx = ctx

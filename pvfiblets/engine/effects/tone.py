@@ -6,49 +6,26 @@ import math
 from dataclasses import dataclass
 from numbers import Real
 
-__all__ = ["OPERATORS", "Tone", "is_number"]
-
 OPERATORS = ("none", "reinhard", "exponential", "aces", "hable")
 """Operators of tone mapping; the formulas are in the shader."""
 
-_WHITE = {"hable": 11.2}
-"""Default white point; the other operators take the brightest colour drawn."""
+_WHITE = {"hable": 11.2}  # default white point; the other operators take the brightest colour drawn
 
 _BRIGHTEST = 1e4
 
 
 @dataclass(frozen=True)
 class Tone:
-    """Changes of red, green and blue, the same for all pixels: exposure, operator, contrast, gamma, in this order.
+    """Changes of red, green and blue, the same for all pixels: exposure, operator, contrast, gamma, in this order."""
 
-    Parameters
-    ----------
-    operator : str
-        One of `OPERATORS`.
-    exposure : float
-        Factor of the drawn colours; above 0.
-    white : float, optional
-        What the exposed picture's white becomes white from, for ``'reinhard'`` and ``'hable'``: above 0. The exposure
-        (so that white stays white), and 11.2, by default.
-    brightness : float
-        Added, -1 to 1.
-    contrast : float
-        Factor of the distance from middle grey; 0 or more.
-    gamma : float
-        Colours are raised to ``1 / gamma``; above 0.
-
-    Raises
-    ------
-    ValueError
-        A value has no meaning.
-    """
-
-    operator: str = "none"
-    exposure: float = 1.0
+    operator: str = "none"  # one of `OPERATORS`
+    exposure: float = 1.0  # factor of the drawn colours; above 0
+    # what the exposed picture's white becomes white from, for `'reinhard'` and `'hable'`: above 0. The exposure (so
+    # that white stays white), and 11.2, by default.
     white: float | None = None
-    brightness: float = 0.0
-    contrast: float = 1.0
-    gamma: float = 1.0
+    brightness: float = 0.0  # added, -1 to 1
+    contrast: float = 1.0  # factor of the distance from middle grey; 0 or more
+    gamma: float = 1.0  # colours are raised to `1 / gamma`; above 0
 
     def __post_init__(self) -> None:
         if self.operator not in OPERATORS:

@@ -32,27 +32,15 @@ if TYPE_CHECKING:
     from .pipelines import Pipeline
     from .visibility import Visibility
 
-__all__ = ["Census", "count_fiblets", "no_counts"]
-
-
 
 class Census:
-    """Counts fiblets on one context.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    max_groups : int
-        Work groups per axis of a dispatch; 0 where there are no compute shaders.
-    """
+    """Counts fiblets on one context."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, max_groups: int) -> None:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs
-        self._max_groups = max_groups
+        self._max_groups = max_groups  # work groups per axis of a dispatch; 0 where there are no compute shaders
 
     def count(
         self, chunks: Sequence[Chunk], features: Sequence[str], marked: ComputePipeline | None, kept: Visibility

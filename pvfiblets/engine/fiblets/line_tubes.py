@@ -16,8 +16,6 @@ from ..frame import Array, local_frame
 from ..gl.uniform_struct import Field, UniformStruct
 from ..view import View
 
-__all__ = ["TUBES_BLOCK", "tubes_block"]
-
 TUBES_BLOCK = UniformStruct(
     "Tubes",
     Field("tube_radius", "float", "r"),

@@ -32,8 +32,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ALL", "ANY", "FIRST", "LAST", "RegionQuery", "nearest_anchor"]
 
-BATCH = 1 << 20
-"""Fiblets asked at a time, so that no dispatch runs for long."""
+BATCH = 1 << 20  # fiblets asked at a time, so that no dispatch runs for long
 
 _STAGES = 3
 
@@ -44,34 +43,16 @@ Bytes = npt.NDArray[np.uint8]
 
 
 class RegionQuery:
-    """Asks one set that is on the GPU.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    fiblets : FibletSet
-        The whole set, with its codes.
-    chunks : sequence of Chunk
-        What of it is on the GPU.
-    max_groups : int
-        Work groups per axis of a dispatch; 0 for as many as the driver allows.
-
-    Attributes
-    ----------
-    unsure : int
-        How many streamlines of the last query were settled in float64.
-    """
+    """Asks one set that is on the GPU."""
 
     def __init__(
         self,
         ctx: moderngl.Context,
         gl: GLExtras,
         programs: Programs,
-        fiblets: FibletSet,
-        chunks: Sequence[Chunk],
-        max_groups: int,
+        fiblets: FibletSet,  # the whole set, with its codes
+        chunks: Sequence[Chunk],  # what of it is on the GPU
+        max_groups: int,  # work groups per axis of a dispatch; 0 for as many as the driver allows
     ) -> None:
         self._ctx = ctx
         self._gl = gl
@@ -81,7 +62,7 @@ class RegionQuery:
         self._max_groups = max_groups
         self._block = RegionBlock(ctx, gl)
         self._frame: moderngl.Buffer | None = None
-        self.unsure = 0
+        self.unsure = 0  # how many streamlines of the last query were settled in float64
 
     @property
     def available(self) -> bool:

@@ -46,76 +46,40 @@ if TYPE_CHECKING:
     from .region_query import RegionQuery
     from .sample_layers import Rectangle, SampledLines
 
-__all__ = ["FibletRenderer"]
-
 
 class FibletRenderer(LinesBehind):
     """Draws one fiblet set.
 
     What others in the scene hide may be missing from a picture for which their depth was given: two-phase culling
     looks at it.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        OpenGL 3.3 or later.
-    fiblets : FibletSet
-        Copied to the GPU here; not kept in memory otherwise.
-    pipeline : str
-        ``'auto'`` takes the fastest that the context has; see :func:`pvfiblets.engine.gl.capabilities.pipelines`.
-    culling : {'two-phase', 'auto', 'coverage', None}
-        How fiblets behind others are found out. ``'two-phase'`` changes no pixel of the picture; ``'auto'`` is
-        two-phase where pictures are measured to take less time by it, and none elsewhere
-        (:mod:`pvfiblets.engine.culling.choice`); ``'coverage'`` is that of the paper (Schertzer et al. 2022, section
-        3.4), which may lose some for one frame after the camera jumped; ``None`` draws all that is in the view volume.
-    fit : {None, 'sample'}
-        What to do where memory does not suffice: refuse, or draw an even share of the streamlines, always the same one
-        (:mod:`pvfiblets.engine.fiblets.data.memory_fit`).
-    progress : bool
-        Show a progress bar while copying.
-    max_buffer_bytes, max_groups, max_total_bytes : int, optional
-        Limits below the driver's own: bytes of one buffer of records, work groups along one axis, bytes of all buffers.
-    lender : Drawable, optional
-        As of :class:`pvfiblets.engine.drawable.Drawable`.
-    whole : FibletSet, optional
-        What filters speak of, where `fiblets` are some of its streamlines (:mod:`pvfiblets.codec.restrict`).
-    alike : int, optional
-        Fiblets of a set whose pictures those of this part of it shall equal in every bit.
-    most : float
-        With ``fit='sample'``: draw no larger share of the streamlines, whatever would fit.
-
-    Attributes
-    ----------
-    pipeline : str
-        The one in use.
-    share : float
-        How many of the streamlines that have points are drawn: 1.0 but for ``fit='sample'``.
-
-    Raises
-    ------
-    EngineError
-        If OpenGL is older than the pipeline, or memory does not suffice, as far as can be known before anything is
-        allocated; nothing stays behind on the GPU.
-    ValueError
-        If there is no pipeline or fit of that name.
     """
 
     def __init__(
         self,
         ctx: moderngl.Context,
-        fiblets: FibletSet,
+        fiblets: FibletSet,  # copied to the GPU here; not kept in memory otherwise
         *,
+        # `'auto'` takes the fastest that the context has; see `pvfiblets.engine.gl.capabilities.pipelines`
         pipeline: str = "auto",
+        # how fiblets behind others are found out. `'two-phase'` changes no pixel of the picture; `'auto'` is two-phase
+        # where pictures are measured to take less time by it, and none elsewhere (`pvfiblets.engine.culling.choice`);
+        # `'coverage'` is that of the paper (Schertzer et al. 2022, section 3.4), which may lose some for one frame
+        # after the camera jumped; `None` draws all that is in the view volume.
         culling: str | None = "two-phase",
+        # what to do where memory does not suffice: refuse, or draw an even share of the streamlines, always the same
+        # one (`pvfiblets.engine.fiblets.data.memory_fit`)
         fit: str | None = None,
-        progress: bool = False,
+        progress: bool = False,  # show a progress bar while copying
+        # limits below the driver's own: bytes of one buffer of records, work groups along one axis, bytes of all
+        # buffers
         max_buffer_bytes: int | None = None,
         max_groups: int | None = None,
         max_total_bytes: int | None = None,
-        lender: Drawable[Any] | None = None,
+        lender: Drawable[Any] | None = None,  # as of `pvfiblets.engine.drawable.Drawable`
+        # what filters speak of, where `fiblets` are some of its streamlines (`pvfiblets.codec.restrict`)
         whole: FibletSet | None = None,
-        alike: int | None = None,
-        most: float = 1.0,
+        alike: int | None = None,  # fiblets of a set whose pictures those of this part of it shall equal in every bit
+        most: float = 1.0,  # with `fit='sample'`: draw no larger share of the streamlines, whatever would fit
     ) -> None:
         pipeline = choose(ctx, pipeline)
         check_choices(fit=fit)
@@ -257,10 +221,8 @@ class FibletRenderer(LinesBehind):
         )
 
     def needs_outside(self, view: View, style: Style) -> bool:
-        """Say whether :meth:`render` would gain from the depth of other things in the scene.
-
-        Only where the camera has just moved: the second picture of a view is drawn whole, to be used from then on.
-        """
+        """Say whether :meth:`render` would gain from the depth of other things in the scene."""
+        # Only where the camera has just moved: the second picture of a view is drawn whole, to be used from then on.
         two_phase = self._occlusion is not None and self._occlusion.halfway
         return two_phase and self._last != (view, style)
 
@@ -292,38 +254,14 @@ class FibletRenderer(LinesBehind):
         yield from ()
 
     def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
-        """Return the least and the greatest of a per-point value, for a colour map's range.
-
-        Parameters
-        ----------
-        values : str or VolumeSource
-            As in :class:`FibletStyle`. Arc length and curvature are measured on the GPU, once.
-
-        Returns
-        -------
-        tuple of float
-            Of a stored array: the range that its codes span; of a volume: that of its finite voxels.
-
-        Raises
-        ------
-        EngineError
-            If there is no such array, or after :meth:`release`.
-        """
+        """Return the range of a per-point value: of an array that of its codes, of a volume that of finite voxels."""
         self._check_alive()
         self._shared.bind()
         return self._values.range(values, self._decoding_features())
 
     @property
     def filtering(self) -> Filter | None:
-        """What is there to be drawn; None for everything. Setting it takes effect with the next picture.
-
-        Raises
-        ------
-        ValueError
-            On setting one that is for another set.
-        EngineError
-            After :meth:`release`, or if memory does not suffice.
-        """
+        """What is there to be drawn; None for everything. Setting it takes effect with the next picture."""
         self._check_alive()
         return self._kept.filtering
 
@@ -336,20 +274,8 @@ class FibletRenderer(LinesBehind):
         self._kept.filtering = wanted
 
     def query(self, region: Region, sampling: Sampling = "lines") -> npt.NDArray[np.uint8]:
-        """Say how each streamline of the set lies to a region, whatever is filtered or drawn.
-
-        On the GPU where it can (:attr:`.RegionQuery.available`), and equal to what the CPU says.
-
-        Parameters
-        ----------
-        region, sampling
-            As in :func:`pvfiblets.query.selection.passing.region_flags`, which also says what is returned and raised.
-
-        Raises
-        ------
-        EngineError
-            After :meth:`release`, or if memory does not suffice.
-        """
+        """Return how each streamline of the set lies to a region, whatever is filtered or drawn."""
+        # On the GPU where it can (`.RegionQuery.available`), and equal to `.region_flags` on the CPU.
         from .region_query import RegionQuery
 
         self._check_alive()

@@ -9,47 +9,30 @@ from ..view import Style, check_at_least
 
 __all__ = ["FibletStyle"]
 
-NO_WIDTH = 1e-3
-"""Pixels: a brush that reaches none. 0 stands for thin lines."""
+NO_WIDTH = 1e-3  # pixels: a brush that reaches none. 0 stands for thin lines.
 
 
 @dataclass(frozen=True)
 class FibletStyle(Style):
     """The style of fiblets.
 
-    Parameters
-    ----------
-    values : str or VolumeSource, optional
-        The per-point value to write beside each pixel: ``'curvature'`` (1/mm), ``'arc_length'`` (mm from the
-        streamline's first point), the name of an array in ``FibletSet.per_point`` or of colours there, or a volume to
-        be sampled at the points (:mod:`pvfiblets.engine.fiblets.data.sampled_volume`). None costs nothing.
-    line_width : float
-        Pixels, above 0. More than 1 draws round brushes of that diameter; else lines are thin, like OpenGL's lines of
-        one pixel. Where ``exact``, all are brushes.
-    tolerance : float
-        Pixels. A fiblet whose points all lie this near to the segment between its ends is drawn as that segment, as is
-        one that takes up to four pixels in all (paper: Schertzer et al. 2022, section 3.4.4). 0 draws every point.
-    across : bool
-        Whether to write where across a line each pixel lies, for shading it as if it were round (``GBuffer.across``).
-        Thin lines have nothing to write.
-    radius : float, optional
-        Millimetres. Draws tubes of that radius, closed by half spheres, instead of lines of a width in pixels: each
-        pixel shows the nearest point of their surface. ``line_width`` is then not looked at.
-    min_width : float
-        Pixels, at least 1: tubes that are thinner are drawn as wide as that, unless ``exact``.
-
-    Raises
-    ------
-    ValueError
-        If the line width is not above 0, the least width below 1, the tolerance below 0, the radius not positive, or
-        any of them not finite.
+    ``values`` is ``'curvature'`` (1/mm), ``'arc_length'`` (mm from the streamline's first point), the name of an array
+    in ``FibletSet.per_point`` or of colours there, or a volume to be sampled at the points. None costs nothing.
     """
 
+    # pixels, above 0. More than 1 draws round brushes of that diameter; else lines are thin, like OpenGL's lines of one
+    # pixel. Where `exact`, all are brushes.
     line_width: float = 1.0
+    # pixels. A fiblet whose points all lie this near to the segment between its ends is drawn as that segment, as is
+    # one that takes up to four pixels in all (paper: Schertzer et al. 2022, section 3.4.4). 0 draws every point.
     tolerance: float = 0.0
+    # whether to write where across a line each pixel lies, for shading it as if it were round (`GBuffer.across`). Thin
+    # lines have nothing to write.
     across: bool = False
+    # millimetres. Draws tubes of that radius, closed by half spheres, instead of lines of a width in pixels: each pixel
+    # shows the nearest point of their surface. `line_width` is then not looked at.
     radius: float | None = None
-    min_width: float = 1.0
+    min_width: float = 1.0  # pixels, at least 1: tubes that are thinner are drawn as wide as that, unless `exact`
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.line_width) and self.line_width > 0.0):

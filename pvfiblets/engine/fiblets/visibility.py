@@ -20,33 +20,19 @@ if TYPE_CHECKING:
     from ..view import View
     from .data.chunks import Chunk
 
-__all__ = ["Visibility"]
-
 
 class Visibility:
-    """Filter and region of a renderer; nothing of either stays on the GPU while there is none.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    whole, drawn : FibletSet
-        The set that filters refer to, and the set on the GPU: the same, or some of its streamlines.
-    chunks : sequence of Chunk
-    place : tuple
-        The lattice of the anchors, as of `RegionCut`.
-    """
+    """Filter and region of a renderer; nothing of either stays on the GPU while there is none."""
 
     def __init__(
         self,
         ctx: moderngl.Context,
         gl: GLExtras,
         programs: Programs,
-        whole: FibletSet,
+        whole: FibletSet,  # the set that filters refer to, and the set on the GPU: the same, or some of its streamlines
         drawn: FibletSet,
         chunks: Sequence[Chunk],
-        place: Place,
+        place: Place,  # the lattice of the anchors, as of `RegionCut`
     ) -> None:
         self._ctx = ctx
         self._gl = gl

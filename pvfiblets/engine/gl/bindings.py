@@ -13,45 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-__all__ = [
-    "ANSWER_STORAGE",
-    "BETWEEN_ROUNDS",
-    "BLOCKS",
-    "CLUSTER_STORAGE",
-    "CONSTANTS",
-    "COUNT_STORAGE",
-    "CROSSINGS",
-    "CULLING",
-    "FIBLET_DATA",
-    "FIBLET_ROUNDS",
-    "FIRST_UNIT",
-    "GATHERING",
-    "HALOS",
-    "HIT_KEYS",
-    "IMAGES",
-    "ITEMS",
-    "ITEMS_SHOWN",
-    "ITEM_STORAGE",
-    "LAYER_COPY",
-    "MASKS",
-    "MEASURE_STORAGE",
-    "NEARER_PART",
-    "PEELING",
-    "REGIONS",
-    "SAMPLED",
-    "SAMPLE_LAYER",
-    "STORAGE",
-    "SUM_IMAGES",
-    "TUBES",
-    "TUBE_PROBE",
-    "VOLUMES",
-    "VOLUME_COARSE",
-    "VOLUME_OCCLUSION",
-    "BindingError",
-    "Scope",
-    "together",
-]  # fmt: skip
-
 FIRST_UNIT = 9
 
 
@@ -60,24 +21,10 @@ class BindingError(ValueError):
 
 
 class Scope(Mapping[str, int]):
-    """Binding numbers by name.
-
-    Parameters
-    ----------
-    name : str
-        Of the programs, for messages.
-    numbers : mapping of str to int
-    first, last : int
-        The least and the greatest number that there may be.
-
-    Raises
-    ------
-    BindingError
-        If two names share a number, or one is out of range.
-    """
+    """Binding numbers by name."""
 
     def __init__(self, name: str, numbers: Mapping[str, int], *, first: int = FIRST_UNIT, last: int = 47) -> None:
-        self.name = name
+        self.name = name  # of the programs, for messages
         self._numbers = dict(numbers)
         for bound, number in self._numbers.items():
             if not first <= number <= last:

@@ -11,8 +11,6 @@ from .bindings import BLOCKS
 if TYPE_CHECKING:
     from .uniform_struct import UniformStruct
 
-__all__ = ["BlockBuffers"]
-
 
 class BlockBuffers:
     """Uniform blocks of one set, by name in ``buffers``."""

@@ -53,12 +53,10 @@ _NEEDS: dict[str, tuple[int, str | None]] = {
     "geometry": (330, None),
 }
 
-PIPELINES = (AUTO, *_NEEDS)
-"""Values of ``pipeline``."""
+PIPELINES = (AUTO, *_NEEDS)  # values of `pipeline`
 CULLINGS = ("auto", "none", "coverage", "two-phase")
 """Values of ``culling``; None means ``'none'``, and ``'auto'`` two-phase where that is measured to be faster."""
-FITS = (None, "sample", "stream")
-"""Values of ``fit``."""
+FITS = (None, "sample", "stream")  # values of `fit`
 
 # Any of these sets lets a shader take the least of 64-bit words atomically.
 _ATOMICS_64 = (
@@ -69,23 +67,12 @@ _ATOMICS_64 = (
 
 @dataclass(frozen=True)
 class PipelineInfo:
-    """One pipeline on one context.
+    """One pipeline on one context."""
 
-    Attributes
-    ----------
-    name : str
-        For ``pipeline=``.
-    available : bool
-    why_not : str or None
-        What is missing; None where it is available.
-    needs : str
-        The OpenGL version and extension.
-    """
-
-    name: str
+    name: str  # for `pipeline=`
     available: bool
-    why_not: str | None
-    needs: str
+    why_not: str | None  # the missing requirements; None where it is available
+    needs: str  # the OpenGL version and extension
 
 
 class PipelineTable(list[PipelineInfo]):
@@ -108,32 +95,16 @@ class PipelineTable(list[PipelineInfo]):
 
 @dataclass(frozen=True)
 class Capabilities:
-    """An OpenGL context described; made by :meth:`of`.
+    """An OpenGL context described; made by :meth:`of`."""
 
-    Attributes
-    ----------
-    version : str
-        Such as ``'4.5'``.
-    vendor, renderer, driver : str
-        As OpenGL names them: ``GL_VENDOR``, ``GL_RENDERER``, ``GL_VERSION``.
-    software : bool
-        Whether OpenGL runs on the CPU.
-    atomics64 : str or None
-        The extension for depth and id in one atomic word, if any.
-    extensions : tuple of str
-        Sorted.
-    limits : dict
-        Integers by OpenGL's names, without missing extensions.
-    """
-
-    version: str
-    vendor: str
+    version: str  # such as `'4.5'`
+    vendor: str  # as OpenGL names them: `GL_VENDOR`, `GL_RENDERER`, `GL_VERSION`
     renderer: str
     driver: str
-    software: bool
-    atomics64: str | None
-    extensions: tuple[str, ...]
-    limits: dict[str, int]
+    software: bool  # whether OpenGL runs on the CPU
+    atomics64: str | None  # the extension for depth and id in one atomic word, if any
+    extensions: tuple[str, ...]  # sorted
+    limits: dict[str, int]  # integers by OpenGL's names, without missing extensions
 
     @classmethod
     def of(cls, ctx: moderngl.Context) -> Capabilities:

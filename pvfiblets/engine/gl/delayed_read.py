@@ -16,8 +16,7 @@ from .moderngl_extras import GLExtras
 
 __all__ = ["DelayedRead"]
 
-AT_ONCE = 3
-"""Pictures that may be on their way: drivers queue two or three."""
+AT_ONCE = 3  # pictures that may be on their way: drivers queue two or three
 
 _FLOAT = 4
 
@@ -32,14 +31,7 @@ class _Read(NamedTuple):
 
 
 class DelayedRead:
-    """Reads float32 numbers of framebuffers, later.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Must be current in every call.
-    gl : GLExtras
-    """
+    """Reads float32 numbers of framebuffers, later."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras) -> None:
         self._ctx, self._gl = ctx, gl

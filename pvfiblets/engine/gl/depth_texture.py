@@ -6,8 +6,6 @@ import moderngl
 
 from .moderngl_extras import GLExtras
 
-__all__ = ["depth_texture"]
-
 _TEXTURE_2D = 0x0DE1
 _DEPTH_COMPONENT, _DEPTH_COMPONENT_32F, _FLOAT = 0x1902, 0x8CAC, 0x1406
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import ctypes
 from typing import Any
 
-__all__ = ["FUNCTIONS", "INTEGERS", "RETURNS"]
-
 _UINT, _INT, _POINTER = ctypes.c_uint, ctypes.c_int, ctypes.c_void_p
 
 # Name: types of the arguments, and requirements beyond OpenGL 3.3.

@@ -11,8 +11,6 @@ from typing import Any
 
 from ..errors import EngineError
 
-__all__ = ["loader"]
-
 
 @cache
 def _library(name: str) -> Any:

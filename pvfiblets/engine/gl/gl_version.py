@@ -13,8 +13,7 @@ import moderngl
 
 __all__ = ["version_of"]
 
-GENEROUS = ("NVIDIA Corporation",)
-"""Vendors whose older contexts have all of later versions."""
+GENEROUS = ("NVIDIA Corporation",)  # vendors whose older contexts have all of later versions
 
 _TAKEN_IN: tuple[tuple[int, tuple[str, ...]], ...] = (
     (330, ("explicit_attrib_location", "sampler_objects", "timer_query")),

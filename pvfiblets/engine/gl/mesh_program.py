@@ -15,16 +15,13 @@ import moderngl
 from ..errors import EngineError
 from .moderngl_extras import GLExtras, Uniform
 
-__all__ = ["MeshProgram"]
-
 _STAGES = {"fragment_shader": 0x8B30, "mesh_shader": 0x9559, "task_shader": 0x955A}
 _COMPILE_STATUS, _LINK_STATUS, _LOG_LENGTH = 0x8B81, 0x8B82, 0x8B84
 _ACTIVE_UNIFORMS, _INVALID_INDEX = 0x8B86, 0xFFFFFFFF
 _STRICT = {"flat perprimitive": "perprimitive", "#extension GL_NV_mesh_shader : enable\n": "\n"}
 """How a fragment stage declares a primitive's data for Khronos' compiler, and the form that drivers take: Mesa's wants
 no ``flat`` there, and OpenGL programs on NVIDIA's cards have neither that nor the extension's name."""
-_LONGEST = 256
-"""Characters of a uniform's name, the closing zero included."""
+_LONGEST = 256  # characters of a uniform's name, the closing zero included
 
 # Of a uniform's type: components, and the letters of the function that sets it. Others are samplers, of one int.
 _KINDS = {
@@ -37,28 +34,9 @@ _WORDS = {"f": ctypes.c_float, "i": ctypes.c_int, "ui": ctypes.c_uint}
 
 
 class MeshProgram:
-    """A linked program of a task, a mesh and a fragment stage.
+    """A linked program of a task, a mesh and a fragment stage, whose sources have moderngl's names.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Must be current in every call.
-    sources : mapping of str to str
-        GLSL by moderngl's names: ``task_shader``, ``mesh_shader``, ``fragment_shader``.
-    blocks : mapping of str to int
-        Bindings of uniform blocks; missing ones are skipped.
-    nvidia : bool
-        Whether the sources are of GL_NV_mesh_shader.
-
-    Raises
-    ------
-    moderngl.Error
-        If a stage does not compile, or the stages do not link; with what the driver says.
-
-    Attributes
-    ----------
-    extra : object
-        Whatever its users keep about it, as programs of moderngl have it.
+    ``nvidia`` sources are of GL_NV_mesh_shader. ``blocks`` are bindings of uniform blocks; missing ones are skipped.
     """
 
     def __init__(
@@ -66,7 +44,7 @@ class MeshProgram:
     ) -> None:
         self._gl = GLExtras(ctx)
         self._nvidia = nvidia
-        self.extra: Any = None
+        self.extra: Any = None  # whatever its users keep about it, as programs of moderngl have it
         self.glo = 0
         self._link_either(sources)
         self._array = ctypes.c_uint(0)

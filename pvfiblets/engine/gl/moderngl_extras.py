@@ -56,7 +56,7 @@ _TEXTURE_0, _TEXTURE_2D, _TEXTURE_BUFFER = 0x84C0, 0x0DE1, 0x8C2A
 _TEXTURE_2D_MULTISAMPLE = 0x9100
 _BASE_LEVEL, _MAX_LEVEL = 0x813C, 0x813D
 _READ_FRAMEBUFFER, _DRAW_FRAMEBUFFER, _FRAMEBUFFER = 0x8CA8, 0x8CA9, 0x8D40
-_COLOR_ATTACHMENT_0, _DEPTH_ATTACHMENT = 0x8CE0, 0x8D00
+_COLOR_ATTACHMENT_0 = 0x8CE0
 _COPY_WRITE_BUFFER = 0x8F37
 _COLOR, _DEPTH = 0x1800, 0x1801
 _COMMANDS_COMPLETE, _FLUSH = 0x9117, 0x1
@@ -64,17 +64,10 @@ _PASSED = (0x911A, 0x911C)  # already, or within the time that was given
 
 
 class Uniform(NamedTuple):
-    """The location of a uniform of a program that moderngl did not make.
-
-    Attributes
-    ----------
-    location : int
-    kind : int
-        OpenGL's number of its type.
-    """
+    """The location of a uniform of a program that moderngl did not make."""
 
     location: int
-    kind: int
+    kind: int  # OpenGL's number of its type
 
 
 class BufferTexture:
@@ -82,23 +75,15 @@ class BufferTexture:
 
     Made by :meth:`GLExtras.texture_buffer`. It holds no copy: shaders read the buffer itself.
     Release it before the buffer.
-
-    Attributes
-    ----------
-    internal_format : str
-        Of :data:`TEXEL_FORMATS`.
-    nbytes : int
-        Bytes that can be read: whole texels only.
-    texels : int
     """
 
     def __init__(self, gl: GLExtras, glo: int, buffer: moderngl.Buffer, internal_format: str) -> None:
         self._gl = gl
         self._glo = glo
         self._buffer: moderngl.Buffer | None = buffer  # must outlive the texture
-        self.internal_format = internal_format
+        self.internal_format = internal_format  # of `TEXEL_FORMATS`
         self.texels = buffer.size // TEXEL_FORMATS[internal_format][1]
-        self.nbytes = self.texels * TEXEL_FORMATS[internal_format][1]
+        self.nbytes = self.texels * TEXEL_FORMATS[internal_format][1]  # bytes that can be read: whole texels only
 
     @property
     def glo(self) -> int:
@@ -121,13 +106,7 @@ class BufferTexture:
 
 
 class GLExtras:
-    """Functions of the context that is current, looked up when first needed.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Must be current in every call.
-    """
+    """Functions of the context that is current, looked up when first needed."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
@@ -206,21 +185,17 @@ class GLExtras:
         return texture
 
     def set_sampler(self, program: Any, name: str, unit: int) -> None:
-        """Set the texture unit that a sampler of a program reads, once and for all draws.
-
-        moderngl does not know samplers of buffer textures: setting their ``value`` does nothing.
-        """
+        """Set the texture unit that a sampler of a program reads, once and for all draws."""
+        # moderngl does not know samplers of buffer textures: setting their `value` does nothing.
         uniform = program.get(name, None)
         if isinstance(uniform, (moderngl.Uniform, Uniform)):
             self.function("glUseProgram")(program.glo)
             self.function("glUniform1i")(uniform.location, unit)
 
     def add_levels(self, texture: moderngl.Texture, levels: int) -> None:
-        """Give a texture storage for smaller levels, each half as wide and high (rounded down) as the one before.
-
-        moderngl makes them only by filtering, which integers do not allow. Contents are undefined. Allowed levels
-        become 0 to ``levels - 1``.
-        """
+        """Give a texture storage for smaller levels, each half as wide and high (rounded down) as the one before."""
+        # moderngl makes them only by filtering, which integers do not allow. Contents are undefined. Allowed levels
+        # become 0 to `levels - 1`.
         kind = (texture.dtype, texture.components)
         if kind not in _LEVEL_FORMATS:
             raise EngineError(f"no levels for a texture of {kind}; use one of {list(_LEVEL_FORMATS)}")
@@ -232,12 +207,10 @@ class GLExtras:
         self.limit_levels(texture, 0, levels - 1)
 
     def limit_levels(self, texture: moderngl.Texture, first: int, last: int, unit: int | None = None) -> None:
-        """Limit the levels of a texture that shaders may read; ``texelFetch`` counts them from ``first``.
-
-        The texture stays bound to the unit, moderngl's own by default.
-
-        Reading one level while drawing into another of the same texture is defined only if the one drawn is left out.
-        """
+        """Limit the levels of a texture that shaders may read; ``texelFetch`` counts them from ``first``."""
+        # The texture stays bound to the unit, moderngl's own by default.
+        #
+        # Reading one level while drawing into another of the same texture is defined only if the one drawn is left out.
         texture.use(self._ctx.default_texture_unit if unit is None else unit)
         limit = self.function("glTexParameteri")
         limit(_TEXTURE_2D, _BASE_LEVEL, first)
@@ -245,11 +218,9 @@ class GLExtras:
 
     @contextmanager
     def framebuffers_kept(self) -> Iterator[None]:
-        """Bind again, at the end, the framebuffers that were bound, and have moderngl remember the one it did.
-
-        moderngl binds the one that it remembers whenever it has made another, so a released one must not stay there.
-        ``ctx.detect_framebuffer`` cannot find the bound one: on VTK's framebuffers it leaves an OpenGL error.
-        """
+        """Bind again, at the end, the framebuffers that were bound, and have moderngl remember the one it did."""
+        # moderngl binds the one that it remembers whenever it has made another, so a released one must not stay there.
+        # `ctx.detect_framebuffer` cannot find the bound one: on VTK's framebuffers it leaves an OpenGL error.
         draw = self.get_integer("GL_DRAW_FRAMEBUFFER_BINDING")
         read = self.get_integer("GL_READ_FRAMEBUFFER_BINDING")
         remembered = self._ctx.fbo, self._ctx.mglo.fbo
@@ -266,17 +237,12 @@ class GLExtras:
         target = _TEXTURE_2D_MULTISAMPLE if samples else _TEXTURE_2D
         self.function("glFramebufferTexture2D")(_DRAW_FRAMEBUFFER, _COLOR_ATTACHMENT_0, target, name, 0)
 
-    def attach_level(
-        self, framebuffer: moderngl.Framebuffer, texture: moderngl.Texture, level: int, attachment: int | None = 0
-    ) -> None:
-        """Make a framebuffer draw into one level of a texture, and set its viewport to that level's size.
-
-        One framebuffer per level, attached when the texture is made, spares the frame these calls.
-        """
-        point = _DEPTH_ATTACHMENT if attachment is None else _COLOR_ATTACHMENT_0 + attachment
+    def attach_level(self, framebuffer: moderngl.Framebuffer, texture: moderngl.Texture, level: int) -> None:
+        """Make a framebuffer draw into one level of a texture, and set its viewport to that level's size."""
+        # One framebuffer per level, attached when the texture is made, spares the frame these calls.
         with self.framebuffers_kept():
             self.function("glBindFramebuffer")(_FRAMEBUFFER, framebuffer.glo)
-            self.function("glFramebufferTexture2D")(_FRAMEBUFFER, point, _TEXTURE_2D, texture.glo, level)
+            self.function("glFramebufferTexture2D")(_FRAMEBUFFER, _COLOR_ATTACHMENT_0, _TEXTURE_2D, texture.glo, level)
         width, height = (max(1, side >> level) for side in texture.size)
         framebuffer.viewport = (0, 0, width, height)
 
@@ -299,10 +265,8 @@ class GLExtras:
             self.function("glClearBufferuiv")(_COLOR, attachment, padded)
 
     def clear_words(self, buffer: moderngl.Buffer, offset: int = 0, size: int | None = None) -> None:
-        """Fill a buffer, or a part of it, with zeros on the GPU (OpenGL 4.3).
-
-        moderngl's ``clear`` maps the buffer, and so waits for draws that use it.
-        """
+        """Fill a buffer, or a part of it, with zeros on the GPU (OpenGL 4.3)."""
+        # moderngl's `clear` maps the buffer, and so waits for draws that use it.
         size = buffer.size - offset if size is None else size
         internal, pixels, number = _LEVEL_FORMATS["u4", 1]
         self.function("glBindBuffer")(_COPY_WRITE_BUFFER, buffer.glo)

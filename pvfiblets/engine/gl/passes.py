@@ -30,10 +30,6 @@ class Passes:
 
     A GPU is measured with timer queries. Mesa's software OpenGL returns 0 from them for compute work, but runs it
     before the dispatching call returns: there the clock is read instead.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
     """
 
     def __init__(self, ctx: moderngl.Context) -> None:
@@ -86,8 +82,7 @@ class Passes:
         self._ran.clear()
 
 
-GROUP_SIZE = 64
-"""Invocations of a compute work group, ``group_size`` to the sources."""
+GROUP_SIZE = 64  # invocations of a compute work group, `group_size` to the sources
 
 
 @contextlib.contextmanager
@@ -111,10 +106,8 @@ def work_groups(ctx: moderngl.Context) -> int:
 
 
 def dispatch(program: moderngl.ComputeShader, groups: int, max_groups: int) -> None:
-    """Run work groups, in rows where there are more than one axis may have.
-
-    The shader's ``group_index()`` undoes the folding; groups past the last find nothing to do.
-    """
+    """Run work groups, in rows where there are more than one axis may have."""
+    # The shader's `group_index()` undoes the folding; groups past the last find nothing to do.
     if groups <= 0:
         return
     if groups <= max_groups:

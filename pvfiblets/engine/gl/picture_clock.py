@@ -10,10 +10,7 @@ from typing import Protocol, TypeAlias
 
 from .moderngl_extras import GLExtras
 
-__all__ = ["CallClock", "PictureClock", "TimestampClock", "Which"]
-
-Which: TypeAlias = tuple[int, bool]
-"""Label of a frame, chosen by the caller."""
+Which: TypeAlias = tuple[int, bool]  # label of a frame, chosen by the caller
 
 _TIMESTAMP, _RESULT, _AVAILABLE = 0x8E28, 0x8866, 0x8867
 
@@ -36,13 +33,7 @@ class PictureClock(Protocol):
 
 
 class CallClock:
-    """Seconds until a call returns: where OpenGL works on the CPU before it returns.
-
-    Parameters
-    ----------
-    clock : callable
-        Seconds.
-    """
+    """Seconds until a call returns: where OpenGL works on the CPU before it returns."""
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
         self._clock = clock
@@ -65,13 +56,7 @@ class CallClock:
 
 
 class TimestampClock:
-    """Seconds between two marks in the GPU's own queue; marks may lie around timer queries, which cannot be nested.
-
-    Parameters
-    ----------
-    gl : GLExtras
-        OpenGL 3.3 or later.
-    """
+    """Seconds between two marks in the GPU's own queue; marks may lie around timer queries, which cannot be nested."""
 
     def __init__(self, gl: GLExtras) -> None:
         self._gl = gl

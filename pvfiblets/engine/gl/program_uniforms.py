@@ -8,8 +8,6 @@ import moderngl
 
 from .moderngl_extras import Uniform
 
-__all__ = ["set_uniforms"]
-
 
 def set_uniforms(program: Any, **uniforms: object) -> None:
     """Set those uniforms that the compiler left in, as far as they are not what this function set last."""

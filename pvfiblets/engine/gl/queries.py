@@ -10,20 +10,14 @@ import ctypes
 
 from .moderngl_extras import GLExtras
 
-__all__ = ["Query", "Timers"]
-
 _TARGETS = {"time": 0x88BF, "samples": 0x8914}
 _RESULT = 0x8866
 
 
 class Query:
-    """Measures the GL commands of a ``with`` block; another one of the same kind must not begin in it.
+    """Measures nanoseconds on the GPU (``time``) or ``samples`` that pass all tests in a ``with`` block.
 
-    Parameters
-    ----------
-    gl : GLExtras
-    kind : {"time", "samples"}
-        Nanoseconds on the GPU, or samples that pass all tests.
+    Another one of the same kind must not begin in it.
     """
 
     def __init__(self, gl: GLExtras, kind: str) -> None:
@@ -62,12 +56,7 @@ class Query:
 
 
 class Timers:
-    """Milliseconds on the GPU of passes that have names; each keeps its query until it is dropped.
-
-    Parameters
-    ----------
-    gl : GLExtras
-    """
+    """Milliseconds on the GPU of passes that have names; each keeps its query until it is dropped."""
 
     def __init__(self, gl: GLExtras) -> None:
         self._gl = gl

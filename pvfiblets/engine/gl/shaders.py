@@ -151,8 +151,7 @@ FEATURES: dict[str, str] = {
 }
 """Features of programs, by the names of their switches."""
 
-NEWEST = 430
-"""GLSL that sources are written for, unless they say otherwise."""
+NEWEST = 430  # GLSL that sources are written for, unless they say otherwise
 
 EXTENDED = 450
 """GLSL that sources are raised to for an extension: mesh shaders, with all stages beside them, and 64-bit atomics."""
@@ -283,18 +282,12 @@ class Programs:
     """Programs of one context, built when first asked for and kept.
 
     Whoever draws asks for a program each time it runs, so that :meth:`noting` knows what a picture was made of.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    constants : mapping
-        Values of ``{{ name }}`` in every source.
     """
 
     def __init__(self, ctx: moderngl.Context, constants: Mapping[str, object]) -> None:
         tell_of_compiling(ctx.info["GL_RENDERER"], ctx.info["GL_VERSION"])
         self._ctx = ctx
-        self._constants = dict(constants)
+        self._constants = dict(constants)  # values of `{{ name }}` in every source
         self._programs: dict[str, moderngl.ComputeShader] = {}
         self._requests: dict[tuple[str, frozenset[str]], moderngl.ComputeShader] = {}
         self._linked: dict[tuple[tuple[tuple[str, str], ...], frozenset[str]], moderngl.Program] = {}
@@ -304,10 +297,8 @@ class Programs:
 
     @contextmanager
     def noting(self) -> Iterator[set[str]]:
-        """Yield a set that collects the features of all programs requested meanwhile.
-
-        They are read from the programs' text: what a caller switches on and no stage looks at is not among them.
-        """
+        """Yield a set that collects the features of all programs requested meanwhile."""
+        # They are read from the programs' text: what a caller switches on and no stage looks at is not among them.
         noted: set[str] = set()
         self._noted.append(noted)
         try:
@@ -321,10 +312,8 @@ class Programs:
             noted.update(features)
 
     def compute(self, name: str, features: Iterable[str] = ()) -> moderngl.ComputeShader:
-        """Return the program of a stage with some features on.
-
-        Programs are kept by composed source: a feature that a stage does not look at makes no second program.
-        """
+        """Return the program of a stage with some features on."""
+        # Programs are kept by composed source: a feature that a stage does not look at makes no second program.
         request = name, frozenset(features)
         if request in self._requests:
             self.note(self._switches[request])

@@ -15,13 +15,7 @@ VERSIONS = (460, 450, 430, 410, 330, 320)
 
 
 def bare_context() -> Any:
-    """Return a moderngl context without a window: through EGL where there is one, else as the system has it.
-
-    Raises
-    ------
-    EngineError
-        If there is no OpenGL.
-    """
+    """Return a moderngl context without a window: through EGL where there is one, else as the system has it."""
     import moderngl
 
     problems = []

@@ -12,8 +12,6 @@ import numpy.typing as npt
 from ..errors import EngineError
 from .moderngl_extras import TEXEL_FORMATS, BufferTexture, GLExtras
 
-__all__ = ["LARGEST", "TexelBuffers", "as_singles"]
-
 LARGEST = float(np.finfo(np.float32).max)
 
 

@@ -29,8 +29,6 @@ from .bindings import BLOCKS
 if TYPE_CHECKING:
     import moderngl
 
-__all__ = ["LARGEST", "MODULES", "Field", "UniformStruct", "UniformStructError", "find_struct"]
-
 MODULES = {
     "Chunk": "fiblets.data.chunks",
     "ClipPlanes": "clipping",
@@ -47,8 +45,7 @@ MODULES = {
 }
 """Modules of the engine, by the names of the blocks that they pack."""
 
-LARGEST = 16384
-"""Bytes that OpenGL promises to a uniform block."""
+LARGEST = 16384  # bytes that OpenGL promises to a uniform block
 
 _TYPE = re.compile(
     r"(?:(?P<scalar>float|int|uint)|(?P<of>[iu]?)vec(?P<lanes>[234])|mat(?P<columns>[34]))(?:\[(?P<count>[1-9]\d*)\])?"
@@ -62,27 +59,13 @@ class UniformStructError(ValueError):
 
 @dataclass(frozen=True)
 class Field:
-    """One quantity of a block.
+    """One quantity of a block."""
 
-    Parameters
-    ----------
-    name : str
-        In GLSL, where it is global to a program: begin it with what the block is about.
-    type : str
-        ``float``, ``int``, ``uint``, ``vec2`` to ``vec4`` and their kin of integers (``ivec3``, ``uvec4``), ``mat3`` or
-        ``mat4``, and arrays of these, ``vec4[6]``.
-    doc : str
-        What it is, with its unit: a line, which GLSL gets as a comment.
-
-    Raises
-    ------
-    UniformStructError
-        If one of them has another type.
-    """
-
-    name: str
+    name: str  # in GLSL, where it is global to a program: begin it with what the block is about
+    # `float`, `int`, `uint`, `vec2` to `vec4` and their kin of integers (`ivec3`, `uvec4`), `mat3` or `mat4`, and
+    # arrays of these, `vec4[6]`
     type: str
-    doc: str
+    doc: str  # its meaning and unit: a line, which GLSL gets as a comment
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[a-z]\w*", self.name, re.ASCII):
@@ -97,32 +80,22 @@ class Field:
 
 
 class _Layout:
-    """Where std140 has a field's numbers, counted from the field's start.
-
-    Attributes
-    ----------
-    scalar : numpy.dtype
-        Of one number.
-    shape : tuple of int
-        Of a value: elements of an array, then rows and columns of a matrix or numbers of a vector.
-    stored : tuple of int
-        The same in memory, matrices by columns, with the words that std140 leaves empty.
-    alignment : int
-        Bytes.
-    """
+    """Where std140 has a field's numbers, counted from the field's start."""
 
     def __init__(self, kind: str) -> None:
         match = _TYPE.fullmatch(kind)
         assert match is not None
         self.matrix, self.count = match["columns"] is not None, int(match["count"] or 0)
-        self.scalar = np.dtype("<f4" if self.matrix else _SCALARS[match["scalar"] or match["of"]])
+        self.scalar = np.dtype("<f4" if self.matrix else _SCALARS[match["scalar"] or match["of"]])  # of one number
         self.lanes = lanes = int(match["columns"] or match["lanes"] or 1)
         numbers = (lanes, lanes) if self.matrix else (lanes,) if lanes > 1 else ()
         array = (self.count,) if self.count else ()
         padded = self.matrix or bool(self.count)
+        # of a value: elements of an array, then rows and columns of a matrix or numbers of a vector
         self.shape = (*array, *numbers)
+        # the same in memory, matrices by columns, with the words that std140 leaves empty
         self.stored = (*array, *numbers[:-1], 4) if padded else numbers
-        self.alignment = 16 if padded or lanes > 2 else 4 * lanes
+        self.alignment = 16 if padded or lanes > 2 else 4 * lanes  # bytes
 
     @property
     def nbytes(self) -> int:
@@ -154,29 +127,7 @@ class _Layout:
 
 
 class UniformStruct:
-    """A uniform block.
-
-    Parameters
-    ----------
-    name : str
-        In GLSL; :data:`.bindings.BLOCKS` has its binding point.
-    *fields : Field
-        In the order of memory.
-
-    Attributes
-    ----------
-    name : str
-    fields : dict of str to Field
-    dtype : numpy.dtype
-        With the offsets of std140. Elements of arrays, and columns of matrices, are of four numbers here, the last of
-        which may mean nothing; of arrays of scalars the first counts.
-
-    Raises
-    ------
-    UniformStructError
-        If there are no fields, two have one name, or they are larger than OpenGL promises; or if the block has no
-        binding point.
-    """
+    """A uniform block."""
 
     def __init__(self, name: str, *fields: Field) -> None:
         if name not in BLOCKS:
@@ -184,8 +135,8 @@ class UniformStruct:
                 f"the uniform block {name!r} has no binding point; give it a number in BLOCKS of "
                 f"pvfiblets/engine/gl/bindings.py, which has {sorted(BLOCKS)}"
             )
-        self.name = name
-        self.fields = {field.name: field for field in fields}
+        self.name = name  # in GLSL; `.bindings.BLOCKS` has its binding point
+        self.fields = {field.name: field for field in fields}  # in the order of memory
         if not fields or len(self.fields) < len(fields):
             raise UniformStructError(f"{name}: give fields of different names, not {[field.name for field in fields]}")
         self._layouts = {field.name: _Layout(field.type) for field in fields}
@@ -193,6 +144,8 @@ class UniformStruct:
         for layout in self._layouts.values():
             offsets.append(end + -end % layout.alignment)
             end = offsets[-1] + layout.nbytes
+        # with the offsets of std140. Elements of arrays, and columns of matrices, are of four numbers here, the last of
+        # which may mean nothing; of arrays of scalars the first counts.
         self.dtype = np.dtype(
             {
                 "names": list(self._layouts),

@@ -15,38 +15,23 @@ from .gl_version import version_of
 
 __all__ = ["BATCH", "QUAD", "PulledShapes"]
 
-BATCH = 65536
-"""Vertices of a call: what an index of 16 bits reaches."""
+BATCH = 65536  # vertices of a call: what an index of 16 bits reaches
 
-INDIRECT = 430
-"""OpenGL from which on one call makes all others."""
+INDIRECT = 430  # OpenGL from which on one call makes all others
 
-QUAD = np.array([0, 1, 2, 2, 1, 3])
-"""Indices of two triangles between four corners."""
+QUAD = np.array([0, 1, 2, 2, 1, 3])  # indices of two triangles between four corners
 
 
 class PulledShapes:
-    """Draws many shapes of one kind.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    n_shapes : int
-    shape : numpy.ndarray
-        (n_indices,) the triangles of one shape.
-    corners : int
-        Vertices of one shape.
-    first : str
-        The uniform with the number of a call's first shape.
-    """
+    """Draws many shapes of one kind."""
 
     def __init__(
         self,
         ctx: moderngl.Context,
         n_shapes: int,
-        shape: npt.NDArray[np.int64] = QUAD,
-        corners: int = 4,
-        first: str = "first_shape",
+        shape: npt.NDArray[np.int64] = QUAD,  # (n_indices,) the triangles of one shape
+        corners: int = 4,  # vertices of one shape
+        first: str = "first_shape",  # the uniform with the number of a call's first shape
     ) -> None:
         self._ctx, self._n, self._first = ctx, n_shapes, first
         self._step, self._indices = BATCH // corners, len(shape)

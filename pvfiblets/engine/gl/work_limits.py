@@ -30,25 +30,13 @@ import moderngl
 
 from .passes import is_software
 
-__all__ = ["DISCRETE", "INTEGRATED", "SOFTWARE", "WorkLimits"]
-
 
 class WorkLimits(NamedTuple):
-    """Greatest work of one call.
+    """Greatest work of one call."""
 
-    Attributes
-    ----------
-    fiblets : int
-        To be decoded and drawn.
-    samples : int
-        Along rays through volumes, of all pixels.
-    listed : int
-        Fiblets of one of several calls that share the drawing of a list.
-    """
-
-    fiblets: int
-    samples: int
-    listed: int = 1 << 31
+    fiblets: int  # to be decoded and drawn
+    samples: int  # along rays through volumes, of all pixels
+    listed: int = 1 << 31  # fiblets of one of several calls that share the drawing of a list
 
     @classmethod
     def of(cls, ctx: moderngl.Context) -> WorkLimits:

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ...halos.style import HaloStyle
     from ..culling.two_phase_items import Listing
 
-__all__ = ["HaloDrawStyle", "HaloRenderer"]
-
 
 @dataclass(frozen=True)
 class HaloDrawStyle(Style):
@@ -62,8 +60,6 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
     ``lines_total`` (0 of points), ``primitives`` (triangles without culling) and ``culling`` (as the last picture was
     drawn).
 
-    Notes
-    -----
     Source: Everts, Bekker, Roerdink and Isenberg, "Depth-dependent halos" (2009), section 3.
     """
 

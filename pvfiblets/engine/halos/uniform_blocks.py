@@ -21,14 +21,11 @@ from .vertices import MOST
 
 __all__ = ["CONSTANTS", "HALOS_BLOCK", "ITEM_SHIFT", "HaloBlocks"]
 
-BESIDE = 3.0
-"""Half pictures from the middle, beyond which an axis is cut off."""
+BESIDE = 3.0  # half pictures from the middle, beyond which an axis is cut off
 
-ITEM_SHIFT = 3
-"""Items are listed by eights: to look at each would cost more than it spares, and four bytes a vertex."""
+ITEM_SHIFT = 3  # items are listed by eights: to look at each would cost more than it spares, and four bytes a vertex
 
-CONSTANTS = {"item_shift": ITEM_SHIFT, "beside": BESIDE}
-"""Of the shaders."""
+CONSTANTS = {"item_shift": ITEM_SHIFT, "beside": BESIDE}  # of the shaders
 
 _KINDS = {name: number for number, name in enumerate(DISPLACEMENTS)}
 _TABLE = len(DISPLACEMENTS)
@@ -129,10 +126,8 @@ class HaloBlocks(BlockBuffers):
     def _cue(
         self, to_data: Array, axis: Array, w: Array, scale_of_w: float, perspective: bool, strength: float
     ) -> tuple[float, ...]:
-        """Return (a, d): 1 - a . p - d of a place p (local mm) is the share that depth cueing leaves of a width.
-
-        How near and far goes by the box of the data; what lies behind the eye counts as beside it.
-        """
+        """Return (a, d): 1 - a . p - d of a place p (local mm) is the share that depth cueing leaves of a width."""
+        # How near and far goes by the box of the data; what lies behind the eye counts as beside it.
         local = self._corners - to_data[:3, 3]
         along = local @ axis
         if perspective:

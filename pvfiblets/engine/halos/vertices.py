@@ -21,11 +21,7 @@ from ..gl.moderngl_extras import GLExtras
 from ..gl.texel_buffers import LARGEST, TexelBuffers, as_singles
 from ..lattice import lattice, places
 
-__all__ = ["LAST", "MOST", "Vertices", "mask_places"]
-
-
-LAST = 65535
-"""Place on the mask of a line's last vertex, and of no other."""
+LAST = 65535  # place on the mask of a line's last vertex, and of no other
 
 MOST = LARGEST / 2.0
 """Numbers that filter, and thresholds, count as no larger, infinity neither: what lies between two is a number then."""
@@ -114,13 +110,9 @@ class Vertices(TexelBuffers):
 
 
 def mask_places(offsets: npt.NDArray[np.int64], n_tapered: int, t_tapered: float) -> npt.NDArray[np.uint16]:
-    """Return where along its line's mask every vertex is.
-
-    Notes
-    -----
-    Source: Everts et al. 2009, section 3.4: u goes from 0 to t over the first n vertices and from 1 - t to 1 over the
-    last ones. Lines of less than 2 n + 1 vertices go as far as their middle, from both ends.
-    """
+    """Return where along its line's mask every vertex is."""
+    # Everts et al. 2009, section 3.4: u goes from 0 to t over the first n vertices and from 1 - t to 1 over the last
+    # ones. Lines of less than 2 n + 1 vertices go as far as their middle, from both ends.
     counts = np.diff(offsets)
     filled = counts > 0
     total = np.repeat(counts[filled] - 1, counts[filled]).astype(np.float32)

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ...query.regions.region import Region
     from ..frame import Array
 
-__all__ = ["SIDES", "check_region", "placed_sides", "planes_of"]
-
 SIDES = {
     PLANE: np.array([[0.0, 0, 1, 0]]),
     SLAB: np.array([[0.0, 0, 1, 1], [0, 0, -1, 1]]),

@@ -21,8 +21,6 @@ from .clip_planes import SIDES
 if TYPE_CHECKING:
     from ...query.regions.shapes import Region, Shape
 
-__all__ = ["RAYS_BLOCK", "RegionSignature", "rays_block", "to_unit", "window_matrix"]
-
 _ROWS = 6
 _PLANES, _SPHERE, _SURFACE = range(3)
 
@@ -76,18 +74,10 @@ def _centre(window: Array, place: Array, size: tuple[int, int]) -> Array:
 
 @dataclass(frozen=True)
 class RegionSignature:
-    """The structure that a program is written for: the number and kinds of leaves, and the expression that joins them.
+    """The structure that a program is written for: the kinds of leaves, and the expression that joins them."""
 
-    Attributes
-    ----------
-    kinds : tuple of int
-        Of each leaf, :data:`pvfiblets.query.regions.shapes.PLANE` and so on.
-    program : tuple of int
-        As :attr:`pvfiblets.query.regions.shapes.Region.program`.
-    """
-
-    kinds: tuple[int, ...]
-    program: tuple[int, ...]
+    kinds: tuple[int, ...]  # of each leaf, `pvfiblets.query.regions.shapes.PLANE` and so on
+    program: tuple[int, ...]  # as `pvfiblets.query.regions.shapes.Region.program`
 
     @classmethod
     def from_region(cls, region: Region) -> RegionSignature:

@@ -16,52 +16,28 @@ from ..gl.shaders import Programs
 __all__ = ["LayerStack", "Rectangle", "Squares"]
 
 Array = npt.NDArray[np.float32]
-Rectangle = tuple[int, int, int, int]
-"""Pixels: left, lower, right, upper."""
+Rectangle = tuple[int, int, int, int]  # pixels: left, lower, right, upper
 
-SQUARE = 4
-"""Pixels of a side of the squares that a program of :class:`Squares` reduces; the programs state it too."""
+SQUARE = 4  # pixels of a side of the squares that a program of `Squares` reduces; the programs state it too
 
 
 class LayerStack:
-    """Texture arrays of one size, and framebuffers for their layers.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    size : tuple of int
-        Pixels.
-    layers : int
-    components : sequence of int
-        Of each array, 1, 2 or 4.
-    together : int
-        How many layers of each array a framebuffer has, one array after the other; `layers` is a multiple of it.
-
-    Raises
-    ------
-    EngineError
-        If there are more layers than this OpenGL's arrays have, or memory does not suffice.
-
-    Attributes
-    ----------
-    textures : list of moderngl.TextureArray
-        Undefined until drawn. Nearest neighbours, not mixtures, are read.
-    framebuffers : list of moderngl.Framebuffer
-    """
+    """Texture arrays of one size, and framebuffers for their layers."""
 
     def __init__(
         self,
         ctx: moderngl.Context,
         gl: GLExtras,
-        size: tuple[int, int],
+        size: tuple[int, int],  # pixels
         layers: int,
-        components: Sequence[int],
+        components: Sequence[int],  # of each array, 1, 2 or 4
+        # how many layers of each array a framebuffer has, one array after the other; `layers` is a multiple of it
         together: int = 1,
     ) -> None:
         self.size = size
         self.layers = layers
         self.together = together
+        # undefined until drawn. Nearest neighbours, not mixtures, are read.
         self.textures: list[moderngl.TextureArray] = []
         self.framebuffers: list[moderngl.Framebuffer] = []
         self._components = tuple(components)
@@ -107,14 +83,7 @@ class LayerStack:
 
 
 class Squares:
-    """Reads back what a program says of each square of pixels, two numbers each.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    """
+    """Reads back what a program says of each square of pixels, two numbers each."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx

@@ -41,29 +41,16 @@ if TYPE_CHECKING:
     from ...query.regions.shapes import Region
     from ...query.regions.surfaces import Surface
 
-__all__ = ["RegionIntervals"]
-
-
 _OVERFLOW = "regions/overflow.frag"
 _SCISSOR_TEST = 0x0C11
 
-_FORMS = 8
-"""Programs kept."""
+_FORMS = 8  # programs kept
 
-_LAYERS = 2
-"""Layers of boundaries, until a pixel is known to have more."""
+_LAYERS = 2  # layers of boundaries, until a pixel is known to have more
 
 
 class RegionIntervals:
-    """Keeps the boundaries of a region along the rays of a picture.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        OpenGL 3.3 or later.
-    gl : GLExtras
-    programs : Programs
-    """
+    """Keeps the boundaries of a region along the rays of a picture."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx
@@ -83,10 +70,8 @@ class RegionIntervals:
         self._reads = DelayedRead(ctx, gl)
 
     def prepare(self, view: View, origin: Array, scale: Array, top: int) -> bool:
-        """Update the boundaries; unchanged region, size and camera cost nothing.
-
-        Changes the framebuffer's binding for a while, and leaves blending, culling and the depth test off.
-        """
+        """Update the boundaries; unchanged region, size and camera cost nothing."""
+        # Changes the framebuffer's binding for a while, and leaves blending, culling and the depth test off.
         region = view.region
         if region is None:
             self.release()

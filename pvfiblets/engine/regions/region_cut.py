@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["Place", "RegionCut"]
 
 Array = npt.NDArray[np.float64]
-Place = tuple[Array, Array, int]
-"""Origin of a lattice and mm per integer, ``(3,)`` float64, and the largest integer."""
+Place = tuple[Array, Array, int]  # origin of a lattice and mm per integer, `(3,)` float64, and the largest integer
 
 
 class RegionCut:

@@ -36,11 +36,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Peeled", "SurfaceLayers", "rectangle_of"]
 
-MOST = 4095
-"""Fragments of front or of back faces that a count holds."""
+MOST = 4095  # fragments of front or of back faces that a count holds
 
-IN_A_LAYER = 4
-"""Crossings that a layer holds."""
+IN_A_LAYER = 4  # crossings that a layer holds
 
 _INSPECT = "regions/inspect.frag"
 _NONE = -3.0
@@ -49,22 +47,12 @@ _DEPTH_CLAMP, _CLIP_DISTANCE_0 = 0x864F, 0x3000
 
 @dataclass(frozen=True)
 class Peeled:
-    """Textures of a surface's layers.
+    """Textures of a surface's layers."""
 
-    Attributes
-    ----------
-    rectangle : tuple of int
-        Pixels that the surface may touch: left, lower, right, upper.
-    first, layers : int
-        Numbers of the first, and how many.
-    tallies : int
-        First of its tallies, or -1.
-    """
-
-    rectangle: Rectangle
-    first: int
+    rectangle: Rectangle  # pixels that the surface may touch: left, lower, right, upper
+    first: int  # numbers of the first, and how many
     layers: int
-    tallies: int
+    tallies: int  # first of its tallies, or -1
     crossings: int
 
 
@@ -132,14 +120,7 @@ class _Mesh:
 
 
 class SurfaceLayers:
-    """Draws the layers of a region's surfaces.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    """
+    """Draws the layers of a region's surfaces."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx
@@ -164,10 +145,7 @@ class SurfaceLayers:
         *,
         waits: bool = True,
     ) -> list[Peeled]:
-        """Draw all layers of some surfaces.
-
-        Leaves no framebuffer of the caller's bound, and blending off.
-        """
+        """Draw all layers of some surfaces. Leaves no framebuffer of the caller's bound, and blending off."""
         self._keep_meshes(surfaces)
         matrices, rectangles = [], []
         for surface in surfaces:
@@ -222,10 +200,8 @@ class SurfaceLayers:
     def _draw_one(
         self, k: int, mesh: _Mesh, matrix: Array, rectangle: Rectangle, first: int, waits: bool
     ) -> _Found:
-        """Draw the number of layers of the last picture, and then the missing ones, as far as there is room.
-
-        Returns what :meth:`_inspect` does; of earlier pictures, if it must not wait.
-        """
+        """Draw the number of layers of the last picture, and then the missing ones, as far as there is room."""
+        # Returns what `_inspect` does; of earlier pictures, if it must not wait.
         if rectangle[0] == rectangle[2] or rectangle[1] == rectangle[3]:
             return _Found(0, 0, False)
         known = self._known[k]

@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["REGIONS_BLOCK", "FieldTextures", "RegionBlock", "region_block", "region_features"]
 
-UNDECIDED = -1
-"""Kind of a leaf whose numbers float32 cannot hold: nothing is ever sure about it."""
+UNDECIDED = -1  # kind of a leaf whose numbers float32 cannot hold: nothing is ever sure about it
 
 REGIONS_BLOCK = UniformStruct(
     "Regions",
@@ -111,17 +110,11 @@ class FieldTextures:
     """Distance fields in one texture (r32f, three dimensions), kept while they stay the same.
 
     They are laid above one another along z, as far as the texture may reach, and then in another such stack along x.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    largest : int
-        Texels along one axis.
     """
 
     def __init__(self, ctx: moderngl.Context, largest: int) -> None:
         self._ctx = ctx
-        self._largest = largest
+        self._largest = largest  # texels along one axis
         self._fields: list[DistanceField] = []
         self._texture: moderngl.Texture3D | None = None
         self.corners: list[Corner] = []
@@ -185,18 +178,7 @@ def _stacked(shapes: Sequence[tuple[int, ...]], largest: int) -> tuple[list[Corn
 
 
 class RegionBlock:
-    """A region on one context: its uniform block and its fields, brought up to date when either changed.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-
-    Attributes
-    ----------
-    features : tuple of str
-        Of programs that look at the region; none while there is none.
-    """
+    """A region on one context: its uniform block and its fields, brought up to date when either changed."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras) -> None:
         self._ctx = ctx
@@ -204,7 +186,7 @@ class RegionBlock:
         self._buffer: moderngl.Buffer | None = None
         self._packed = b""
         self._textures = FieldTextures(ctx, int(ctx.info["GL_MAX_3D_TEXTURE_SIZE"]))
-        self.features: tuple[str, ...] = ()
+        self.features: tuple[str, ...] = ()  # of programs that look at the region; none while there is none
 
     @property
     def nbytes(self) -> int:

@@ -26,8 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["Nodes"]
 
 
-HIDDEN = 4
-"""Flag of segments that are not drawn (``shaders/tubes/write_varyings.glsl``)."""
+HIDDEN = 4  # flag of segments that are not drawn (`shaders/tubes/write_varyings.glsl`)
 
 
 class Nodes(TexelBuffers):

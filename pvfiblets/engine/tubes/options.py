@@ -23,19 +23,10 @@ SILHOUETTES: dict[str, str] = {
 
 @dataclass(frozen=True)
 class Solver:
-    """A way to find roots.
+    """A way to find roots."""
 
-    Attributes
-    ----------
-    feature : str or None
-        Its switch in the shaders.
-    iterations : int
-        Steps of one search at most, by default.
-    about : str
-    """
-
-    feature: str | None
-    iterations: int
+    feature: str | None  # its switch in the shaders
+    iterations: int  # steps of one search at most, by default
     about: str
 
 
@@ -50,21 +41,9 @@ SOLVERS: dict[str, Solver] = {
 
 @dataclass(frozen=True)
 class TubeStyle(Style):
-    """How spline tubes become pixels.
+    """How spline tubes become pixels; ``values`` names an attribute of the nodes."""
 
-    Parameters
-    ----------
-    values : str, optional
-        Name of an attribute of the nodes, to write beside each pixel.
-    min_width : float
-        Pixels: thinner tubes are widened to that, or many of their pixels would be missed. 0 leaves them as they are.
-
-    Raises
-    ------
-    ValueError
-        If the width is below 0 or not finite.
-    """
-
+    # pixels: thinner tubes are widened to that, or many of their pixels would be missed. 0 leaves them as they are.
     min_width: float = 1.0
 
     def __post_init__(self) -> None:

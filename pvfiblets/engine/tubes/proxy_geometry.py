@@ -12,8 +12,6 @@ import numpy.typing as npt
 from ..gl.shaders import Programs
 from ..gl.vertex_pulling import BATCH, QUAD, PulledShapes
 
-__all__ = ["ProxyGeometry"]
-
 # Outwards, counter-clockwise: corners by their bits x, y, z.
 _BOX = np.array(
     [0, 2, 1, 1, 2, 3, 4, 5, 6, 6, 5, 7, 0, 1, 4, 4, 1, 5, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 5, 3, 7]

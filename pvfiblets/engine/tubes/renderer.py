@@ -23,8 +23,6 @@ from .uniform_blocks import TubeBlocks
 if TYPE_CHECKING:
     from ...tubes.spline_tubes import NodeValues, SplineTubes
 
-__all__ = ["TubeRenderer"]
-
 
 class TubeRenderer(HitDrawable[TubeStyle]):
     """Draws one set of spline tubes.
@@ -117,11 +115,9 @@ class TubeRenderer(HitDrawable[TubeStyle]):
                 self._silhouettes.draw_listed(program, commands)
 
     def _rounds(self, common: list[str], *, cut: bool, whole: bool, hollow: bool) -> list[tuple[list[str], int]]:
-        """Return features of each round, and which side of the planes it draws.
-
-        What nothing cuts, seen from outside, is met in one loop. The rest needs where rays leave as well, and so the
-        chain.
-        """
+        """Return features of each round, and which side of the planes it draws."""
+        # What nothing cuts, seen from outside, is met in one loop. The rest needs where rays leave as well, and so the
+        # chain.
         solving = SOLVERS[self.solver].feature
         wanted = {"TUBE_DISCARD": self._discard, "TUBE_LISTED": self._listing is not None}
         common = [*common, *([solving] if solving else []), *(name for name, on in wanted.items() if on)]

@@ -13,38 +13,24 @@ from dataclasses import dataclass
 
 __all__ = ["MOST_PAGES", "BrickLayout", "Range", "lay_out", "pieces", "voxels_of_page"]
 
-MOST_PAGES = 8
-"""Textures of one volume."""
+MOST_PAGES = 8  # textures of one volume
 
 PIECE = 1 << 24
 """Voxels that are handed to OpenGL at a time, at the most, if a slice has no more: what a volume takes of the host's
 memory beside itself."""
 
-Range = tuple[slice, slice, slice]
-"""A box of voxels."""
+Range = tuple[slice, slice, slice]  # A box of voxels
 
 
 @dataclass(frozen=True)
 class BrickLayout:
-    """A volume in bricks.
+    """A volume in bricks."""
 
-    Parameters
-    ----------
-    shape : tuple of int
-        Voxels of the volume.
-    size : tuple of int
-        Voxels of a brick. The last along the first two axes is the first of the next brick, if there is one.
-    counts : tuple of int
-        Bricks along each axis.
-    in_page : tuple of int
-        Columns and rows of bricks in a page.
-    pages : int
-    """
-
-    shape: tuple[int, int, int]
+    shape: tuple[int, int, int]  # voxels of the volume
+    # voxels of a brick. The last along the first two axes is the first of the next brick, if there is one.
     size: tuple[int, int, int]
-    counts: tuple[int, int, int]
-    in_page: tuple[int, int]
+    counts: tuple[int, int, int]  # bricks along each axis
+    in_page: tuple[int, int]  # columns and rows of bricks in a page
     pages: int
 
     @property

@@ -24,26 +24,7 @@ it saves. Measured on two cores: 1.5 times as fast from 0.5 on, 1.08 at 0.4, 0.9
 
 
 class NodeList:
-    """Numbers of all nodes of one volume's octree, leaves first (``shaders/volumes/nodes.glsl``).
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    volume : RaycastVolume
-
-    Attributes
-    ----------
-    levels : numpy.ndarray
-        (n_levels, 4) int64: nodes along each axis, and place of the first.
-    skipped : float
-        Share of invisible leaves; 0 for peaks, where it depends on the ray.
-    takes_means : bool
-        Whether nodes that are even are taken as their mean: where it was asked for, and there are enough of them.
-    octree : dict
-        What the octree costs: its ``bytes``, their ``share`` of the volume's, and ``ms`` that building it took. All are
-        0 while rays skip nothing: then there is none, neither here nor on the GPU.
-    """
+    """Numbers of all nodes of one volume's octree, leaves first (``shaders/volumes/nodes.glsl``)."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, volume: RaycastVolume) -> None:
         self._ctx, self._gl, self._volume = ctx, gl, volume
@@ -51,9 +32,13 @@ class NodeList:
         self._took: dict[int, float] = {}
         self._made_for: object = None
         self._lists: dict[str, tuple[moderngl.Buffer, BufferTexture]] = {}
+        # (n_levels, 4) int64: nodes along each axis, and place of the first
         self.levels: npt.NDArray[np.int64] = np.zeros((0, 4), np.int64)
-        self.skipped = 0.0
+        self.skipped = 0.0  # share of invisible leaves; 0 for peaks, where it depends on the ray
+        # whether nodes that are even are taken as their mean: where it was asked for, and there are enough of them
         self.takes_means = False
+        # what the octree costs: its `bytes`, their `share` of the volume's, and `ms` that building it took. All are 0
+        # while rays skip nothing: then there is none, neither here nor on the GPU.
         self.octree: dict[str, float] = {}
 
     def make(self, casting: RaycastOptions) -> None:

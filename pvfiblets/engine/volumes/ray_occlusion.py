@@ -26,8 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["GOLDEN", "LIFT", "MAX_SAMPLES", "RayOcclusionPass"]
 
-MAX_SAMPLES = 2048
-"""Rays of a pixel: the most that float16 counts one by one."""
+MAX_SAMPLES = 2048  # rays of a pixel: the most that float16 counts one by one
 
 MOST_TURNS = 20_000
 """Turns of loops in one draw of a pixel. Mesa's software OpenGL leaves all loops after 65,535 without a word, lanes of
@@ -51,12 +50,6 @@ _NAME, _MEAN = "ray occlusion", "mean ray occlusion"
 class RayOcclusionPass(ScreenEffect):
     """How open each pixel's point of a surface is, by equation 10.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-
-    Notes
-    -----
     Source: Lesar, "Real-time ray casting of volumetric data" (2015), section III.G.
     """
 

@@ -42,8 +42,7 @@ _OF_MODE = {
     "average": ["VOLUME_AVERAGE"],
 }
 FEATURES_OF_FILTER = {"nearest": ["VOLUME_NEAREST"], "trilinear": [], "tricubic": ["VOLUME_TRICUBIC"]}
-_TAPS = {"tricubic": 8}
-"""Look-ups of a sample, where there are several."""
+_TAPS = {"tricubic": 8}  # look-ups of a sample, where there are several
 _OF_REFINEMENT = {"exact": [], "none": ["VOLUME_UNREFINED"], "regula-falsi": [], "newton": ["VOLUME_NEWTON"]}
 _OF_INTEGRATOR = {
     "adaptive": ["VOLUME_PREINTEGRATED"],  # and more where that does not do
@@ -58,18 +57,10 @@ _OF_INTEGRATOR = {
 
 @dataclass(frozen=True)
 class VolumeStyle(Style):
-    """How a volume becomes pixels.
-
-    Parameters
-    ----------
-    values : str, optional
-        Not looked at: the value of a voxel stands beside each pixel.
-    casting : RaycastOptions
-    shading : Shading, optional
-        Of light: lamps that shine on it. Without, it has its own colours.
-    """
+    """How a volume becomes pixels; ``values`` is not read: the value of a voxel stands beside each pixel."""
 
     casting: RaycastOptions = field(kw_only=True)
+    # of light: lamps that shine on it. Without, it has its own colours.
     shading: Shading | None = field(default=None, kw_only=True)
 
     @property
@@ -87,37 +78,17 @@ class VolumeRenderer(Drawable[VolumeStyle]):
     ``skipped``, the share of its leaves in which there is nothing to see; and ``octree``, what it costs: ``bytes``,
     their ``share`` of the volume's, and the ``ms`` that building it took, all 0 while there is none.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        OpenGL 3.3 or later.
-    volume : RaycastVolume
-        Copied to the GPU here.
-
-    Attributes
-    ----------
-    pipeline : str
-        ``'rays'``.
-
-    Raises
-    ------
-    EngineError
-        If memory does not suffice or the volume is larger than eight of this OpenGL's textures; nothing stays behind on
-        the GPU.
-
-    Notes
-    -----
     Source: Lesar, "Real-time ray casting of volumetric data" (2015), section III.
     """
 
     STYLE = VolumeStyle
-    pipeline = "rays"
+    pipeline = "rays"  # `'rays'`
 
     def __init__(self, ctx: moderngl.Context, volume: RaycastVolume) -> None:
         super().__init__(ctx, CONSTANTS)
         # Values on the card are less by the volume's offset; so is all that is compared with them.
         self._offset = volume.offset
-        self._volume = volume = replace(volume, offset=0.0) if volume.offset else volume
+        self._volume = volume = replace(volume, offset=0.0) if volume.offset else volume  # copied to the GPU here
         self._shifted: tuple[RaycastOptions, RaycastOptions] | None = None
         self._shading: Shading | None = None
         self._clim: tuple[float, float] = (0.0, 1.0)

@@ -15,67 +15,37 @@ if TYPE_CHECKING:
 
     from ...volumes.volume import RaycastVolume
 
-__all__ = ["WEAKEST", "Lamp", "Shading"]
-
 WEAKEST = 0.02
 """Part of the range of colours by which values must change from voxel to voxel to have a normal of full weight."""
 
 
 @dataclass(frozen=True)
 class Lamp:
-    """A lamp, in the scene's own coordinates.
+    """A lamp, in the scene's own coordinates."""
 
-    Attributes
-    ----------
-    place : tuple of 3 floats
-        mm; of a directional one the direction towards it.
-    positional : bool
-    colour, highlight : tuple of 3 floats
-        RGB of what it adds to colours and to reflections of itself, times its intensity.
-    way : tuple of 3 floats
-        In which it shines.
-    cone : float
-        Half the angle of its cone, degrees; 90 or more for none.
-    exponent : float
-        Power of the cosine by which it fades within its cone.
-    fading : tuple of 3 floats
-        Constant, linear and quadratic, by distance.
-    """
-
-    place: tuple[float, float, float]
+    place: tuple[float, float, float]  # mm; of a directional one the direction towards it
     positional: bool = False
+    # RGB of its light on surfaces, and in their reflections, times its intensity
     colour: tuple[float, float, float] = (1.0, 1.0, 1.0)
     highlight: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    way: tuple[float, float, float] = (0.0, 0.0, -1.0)
-    cone: float = 180.0
-    exponent: float = 0.0
-    fading: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    way: tuple[float, float, float] = (0.0, 0.0, -1.0)  # in which it shines
+    cone: float = 180.0  # half the angle of its cone, degrees; 90 or more for none
+    exponent: float = 0.0  # power of the cosine; light fades by it within the cone
+    fading: tuple[float, float, float] = (1.0, 0.0, 0.0)  # constant, linear and quadratic, by distance
 
 
 @dataclass(frozen=True)
 class Shading:
     """How light through a volume is shaded.
 
-    Parameters
-    ----------
-    lamps : tuple of Lamp
-        The first `MOST_LAMPS` count.
-    eye : tuple of 4 floats
-        Its place, mm, with 1; of a parallel view the direction towards it, with 0.
-    matrix : tuple of 16 floats
-        From the data's coordinates to the scene's, row by row.
-    ambient, diffuse, specular, power : float
-        As of VTK's properties.
-
-    Notes
-    -----
     Source: Levoy, "Display of surfaces from volume data" (1988), which Lesar 2015 (section I) builds on.
     """
 
-    lamps: tuple[Lamp, ...]
-    eye: tuple[float, ...]
+    lamps: tuple[Lamp, ...]  # the first `MOST_LAMPS` count
+    eye: tuple[float, ...]  # its place, mm, with 1; of a parallel view the direction towards it, with 0
+    # from the data's coordinates to the scene's, row by row
     matrix: tuple[float, ...] = tuple(np.eye(4).ravel().tolist())
-    ambient: float = 0.0
+    ambient: float = 0.0  # as of VTK's properties
     diffuse: float = 1.0
     specular: float = 0.0
     power: float = 1.0

@@ -7,34 +7,9 @@ import moderngl
 from ..errors import EngineError
 from ..gbuffer import GBuffer
 
-__all__ = ["RayTarget"]
-
 
 class RayTarget:
-    """A G-buffer and its framebuffer.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    size : tuple of int
-        Pixels.
-    relief : str or None
-        What its ``across`` holds.
-    coloured : bool
-        Whether it has colours.
-    marked : bool
-        Whether it has a depth buffer that marks pixels.
-
-    Attributes
-    ----------
-    buffer : GBuffer
-    framebuffer : moderngl.Framebuffer
-
-    Raises
-    ------
-    EngineError
-        If a side is longer than the driver's largest texture, or memory does not suffice.
-    """
+    """A G-buffer and its framebuffer."""
 
     def __init__(
         self, ctx: moderngl.Context, size: tuple[int, int], relief: str | None, *, coloured: bool, marked: bool

@@ -25,30 +25,19 @@ _FORMATS: dict[Any, tuple[str, float, float]] = {
 }
 """moderngl's type, and what takes what a shader reads to values: times the first, plus the second."""
 
-UNLIMITED = 2.0**62
-"""Voxels of a texture where nothing is known of a limit."""
+UNLIMITED = 2.0**62  # voxels of a texture where nothing is known of a limit
 
 _BYTES = {"f1": 1, "nu2": 2, "f4": 4}
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What an OpenGL's textures take at the most.
+    """What an OpenGL's textures take at the most."""
 
-    Parameters
-    ----------
-    cube : int
-        Texels along each axis of 3-D ones.
-    side, layers : int
-        Texels along each axis of layers, and their number.
-    voxels : float
-        Of one texture.
-    """
-
-    cube: int
-    side: int
+    cube: int  # texels along each axis of 3-D ones
+    side: int  # texels along each axis of layers, and their number
     layers: int
-    voxels: float = UNLIMITED
+    voxels: float = UNLIMITED  # of one texture
 
     @classmethod
     def of(cls, ctx: moderngl.Context) -> Limits:
@@ -65,28 +54,6 @@ class VolumeTexture:
 
     They are handed over piece by piece: of arrays that lie in memory as textures do, and of memory maps, the host holds
     nothing else beside the volume.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    volume : RaycastVolume
-    limits : Limits, optional
-        In place of the context's.
-
-    Attributes
-    ----------
-    kind : {'f1', 'nu2', 'f4'}
-        moderngl's type of the texels.
-    scale, shift : float
-        A value is what a shader reads times the scale, plus the shift.
-    layout : BrickLayout or None
-        How bricks lie; None of one 3-D texture.
-    nbytes : int
-
-    Raises
-    ------
-    EngineError
-        If memory does not suffice, or an axis has more voxels than layers have texels in all pages together.
     """
 
     def __init__(self, ctx: moderngl.Context, volume: RaycastVolume, limits: Limits | None = None) -> None:
@@ -95,9 +62,10 @@ class VolumeTexture:
         voxels = volume.values
         # Mesa interpolates bytes to bytes: surfaces would lie on stairs.
         kept = np.uint16 if voxels.dtype == np.uint8 and is_software(ctx) else voxels.dtype.type
-        self.kind, self.scale, self.shift = _FORMATS[kept]
+        # A value is what a shader reads times the scale, plus the shift
+        self.kind, self.scale, self.shift = _FORMATS[kept]  # moderngl's type of the texels
         self._pages: list[Any] = []
-        self.layout: BrickLayout | None = None
+        self.layout: BrickLayout | None = None  # how bricks lie; None of one 3-D texture
         whole = volume.n_points
         self._make(volume.shape, limits)
         self.nbytes = _BYTES[self.kind] * (
@@ -211,19 +179,7 @@ class VolumeTexture:
 
 
 class ColourTexture:
-    """The voxels' own colours.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    colours : numpy.ndarray
-        ``(nx, ny, nz, 3)`` uint8.
-
-    Raises
-    ------
-    EngineError
-        If memory does not suffice, or an axis has more voxels than 3-D textures have.
-    """
+    """The voxels' own colours."""
 
     def __init__(self, ctx: moderngl.Context, colours: npt.NDArray[np.uint8]) -> None:
         nx, ny, nz = colours.shape[:3]

@@ -20,32 +20,19 @@ if TYPE_CHECKING:
 
 __all__ = ["TransferTextures"]
 
-SIZE = 1024
-"""Entries of colours by value: opacities are linear between those of the user, extinctions are not."""
+SIZE = 1024  # entries of colours by value: opacities are linear between those of the user, extinctions are not
 
 
 class TransferTextures:
-    """The tables of one volume (``shaders/volumes/light.glsl``).
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    volume : RaycastVolume
-
-    Attributes
-    ----------
-    finer : bool
-        Whether steps are taken in parts where values bend.
-    exact : bool
-        Whether there are values between which not even parts of a step may be looked up: stretches are halved there.
-    """
+    """The tables of one volume (``shaders/volumes/light.glsl``)."""
 
     def __init__(self, ctx: moderngl.Context, volume: RaycastVolume) -> None:
         self._ctx, self._volume = ctx, volume
         self._made_for: object = None
         self._textures: dict[str, moderngl.Texture] = {}
         self._numbers: dict[str, float | tuple[float, float]] = {}
-        self.finer = self.exact = False
+        # whether there are values between which not even parts of a step may be looked up: stretches are halved there
+        self.finer = self.exact = False  # whether steps are taken in parts where values bend
 
     def make(self, casting: RaycastOptions, step: float) -> None:
         """Bring them up to date for steps of some mm."""

@@ -19,11 +19,9 @@ from ..view import MAX_CLIP_PLANES, View
 
 __all__ = ["CONSTANTS", "MAX_LEVELS", "MOST_LAMPS", "RayBlock"]
 
-MAX_LEVELS = 16
-"""Levels of an octree: leaves of 8 voxels in a volume of up to 262,144 along an axis."""
+MAX_LEVELS = 16  # levels of an octree: leaves of 8 voxels in a volume of up to 262,144 along an axis
 
-MOST_LAMPS = 8
-"""Lamps of a scene that shine on light through a volume: the first ones that are on."""
+MOST_LAMPS = 8  # lamps of a scene that shine on light through a volume: the first ones that are on
 
 CONSTANTS: dict[str, Any] = {
     "adaptive_error": ALLOWED,
@@ -77,18 +75,10 @@ Array = npt.NDArray[np.float64]
 
 
 class RayBlock:
-    """The block of one volume.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    volume : RaycastVolume
-    reading : tuple of 2 floats
-        Scale and shift from what shaders read to values.
-    """
+    """The block of one volume."""
 
     def __init__(self, ctx: moderngl.Context, volume: RaycastVolume, reading: tuple[float, float]) -> None:
-        self._volume, self._reading = volume, reading
+        self._volume, self._reading = volume, reading  # scale and shift from what shaders read to values
         self.buffer = ctx.buffer(reserve=RAYCAST_BLOCK.nbytes)
 
     @property

@@ -53,13 +53,7 @@ def _layers(transparency: Any) -> Layers:
 
 
 class PlottedMapper(PlottedLines[EngineOptions], FibletMapper):
-    """A fiblet mapper with scalar bars.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        What to draw.
-    """
+    """A fiblet mapper with scalar bars."""
 
 
 class FibletActor(FibletSettings, SelectableActor):

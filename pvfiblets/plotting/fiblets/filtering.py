@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from pvfiblets.query.measures.measures import Values
     from pvfiblets.query.selection.predicates import Predicate
 
-__all__ = ["BundledActor", "FibletSubject"]
-
 
 @dataclass(frozen=True)
 class FibletSubject:

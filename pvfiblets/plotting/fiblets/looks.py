@@ -22,23 +22,14 @@ __all__ = ["LOOKS", "Apart", "Fewer", "Look", "check_look", "look_of", "settings
 
 @dataclass(frozen=True)
 class Apart:
-    """A width that follows the distance between lines.
+    """A width that follows the distance between lines."""
 
-    Attributes
-    ----------
-    times : float
-        Of that distance.
-    least, most : float
-        The least and the greatest width, as shares of the diagonal of the data's bounds; the greatest where the
-        distance is not known.
-    unit : float
-        What the diagonal is of the width's own unit; 0 for the diagonal in mm.
-    """
-
-    times: float
+    times: float  # of that distance
+    # the least and the greatest width, as shares of the diagonal of the data's bounds; the greatest where the distance
+    # is not known
     least: float
     most: float
-    unit: float = 0.0
+    unit: float = 0.0  # what the diagonal is of the width's own unit; 0 for the diagonal in mm
 
     def value_for(self, data: Any) -> float:
         """Return the width for some data."""
@@ -51,15 +42,9 @@ class Apart:
 
 @dataclass(frozen=True)
 class Fewer:
-    """An opacity that falls with the number of streamlines, which lie on each other.
+    """An opacity that falls with the number of streamlines, which lie on each other."""
 
-    Attributes
-    ----------
-    opacity : float
-        Of 300 streamlines. It falls with the fourth root of their number: more of them also lie beside each other.
-    least, most : float
-    """
-
+    # of 300 streamlines. It falls with the fourth root of their number: more of them also lie beside each other.
     opacity: float
     least: float
     most: float
@@ -72,22 +57,13 @@ class Fewer:
 
 @dataclass(frozen=True)
 class Look:
-    """One look.
+    """One look."""
 
-    Attributes
-    ----------
-    doc : str
-        What it shows, for people.
-    settings : mapping
-        By name; values as they are set, or an `Apart` or `Fewer`.
-    """
-
-    doc: str
-    settings: Mapping[str, Any]
+    doc: str  # its description, for people
+    settings: Mapping[str, Any]  # by name; values as they are set, or an `Apart` or `Fewer`
 
 
-WINDOW = 1000.0
-"""Pixels that the data take of a window, roughly, where they fill it."""
+WINDOW = 1000.0  # pixels that the data take of a window, roughly, where they fill it
 
 RADIUS = Apart(0.35, 1.0 / 1600.0, 1.0 / 400.0)
 THICK = Apart(0.5, 1.0 / 1100.0, 1.0 / 270.0)

@@ -27,37 +27,21 @@ Found = Callable[[np.ndarray, bool, str], None]
 
 
 class Pointing:
-    """Mouse events of one plotter.
-
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-        Whose events.
-    mode : {"click", "box", "lasso"}
-        What the user draws.
-    button : {"left", "right"}
-        That clicks; areas are drawn with the left one.
-    found : callable
-        Called with the corners ``(k, 2)`` in window pixels, whether they are a click, and the mode of
-        selecting that the keys held down ask for.
-    hovered : callable, optional
-        Called with the pixel when the mouse moves and no button is down.
-    color : color-like
-        Of outlines.
-    start : bool
-        Draw areas at once, before the key is pressed.
-    """
+    """Mouse events of one plotter."""
 
     def __init__(
         self,
-        plotter: Any,
+        plotter: Any,  # whose events
         *,
-        mode: str,
-        button: str,
+        mode: str,  # what the user draws
+        button: str,  # that clicks; areas are drawn with the left one
+        # called with the corners `(k, 2)` in window pixels, whether they are a click, and the mode of selecting that
+        # the keys held down ask for
         found: Found,
+        # called with the pixel when the mouse moves and no button is down
         hovered: Callable[[tuple[int, int]], None] | None,
-        color: Any,
-        start: bool,
+        color: Any,  # of outlines
+        start: bool,  # draw areas at once, before the key is pressed
     ) -> None:
         self._plotter = plotter
         self._interactor = plotter.iren.interactor

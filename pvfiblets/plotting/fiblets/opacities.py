@@ -16,27 +16,17 @@ __all__ = ["TRANSFERS", "Opacities", "find_opacities"]
 TRANSFERS = ("linear", "linear_r", "geom", "geom_r", "sigmoid", "sigmoid_r")
 """Transfer functions that a page offers; PyVista has more sigmoids."""
 
-POINTS = "opacity"
-"""Name of an array of opacities per point among the fiblets' own."""
+POINTS = "opacity"  # name of an array of opacities per point among the fiblets' own
 
 
 @dataclass(frozen=True, eq=False)
 class Opacities:
-    """A choice of opacities for some fiblets; one of these is given.
+    """A choice of opacities for some fiblets; one of these is given."""
 
-    Attributes
-    ----------
-    transfer : str or numpy.ndarray, optional
-        Of the colour map: PyVista's name of a transfer function, or opacities 0 to 1 from the first colour to the last.
-    streamlines : numpy.ndarray, optional
-        (n_streamlines,) float64, 0 to 1.
-    points : str, optional
-        Name of a per-point array.
-    """
-
+    # of the colour map: PyVista's name of a transfer function, or opacities 0 to 1 from the first colour to the last
     transfer: Any = None
-    streamlines: np.ndarray | None = None
-    points: str | None = None
+    streamlines: np.ndarray | None = None  # (n_streamlines,) float64, 0 to 1
+    points: str | None = None  # name of a per-point array
 
 
 def find_opacities(fiblets: FibletSet, choice: Any) -> tuple[FibletSet, Opacities]:

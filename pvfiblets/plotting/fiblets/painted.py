@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 
     from pvfiblets.query.painting.live import LiveRegions
 
-__all__ = ["follow_painted"]
-
 
 def follow_painted(actor: Any, live: LiveRegions, name: str | None, how: Mapping[str, Any]) -> str:
     """Add a condition that painted regions make, and make it anew after each stroke until it is taken back."""

@@ -18,18 +18,10 @@ def standing_out(background: Any) -> str:
 
 
 class Outline:
-    """A closed line over one renderer.
-
-    Parameters
-    ----------
-    renderer : pyvista.Renderer
-        Drawn over.
-    color : color-like
-        Of the line.
-    """
+    """A closed line over one renderer."""
 
     def __init__(self, renderer: Any, color: Any) -> None:
-        self._renderer = renderer
+        self._renderer = renderer  # drawn over
         self._mapper = vtkPolyDataMapper2D()
         self._actor = vtkActor2D()
         self._actor.SetMapper(self._mapper)

@@ -151,11 +151,9 @@ def visible(
 def everything(
     actor: FibletActor, polygon: Any, *, tolerance: float = 0.0, renderer: Any = None
 ) -> Picked | None:
-    """Return all of an actor under an area of the window, hidden or not; ``None`` if it is empty.
-
-    Arguments are as for :func:`visible`. Lines left out by the actor's filters and cuts are not included. Visible
-    lines of the area are always included, even if only a line's pixel, not its middle, lies in it.
-    """
+    """Return all of an actor under an area of the window, hidden or not; ``None`` if it is empty."""
+    # Arguments are as for `visible`. Lines left out by the actor's filters and cuts are not included. Visible lines of
+    # the area are always included, even if only a line's pixel, not its middle, lies in it.
     from pvfiblets.query.selection.screen import under_polygon
 
     shown = shown_by(actor.mapper, renderer)

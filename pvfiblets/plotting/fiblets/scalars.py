@@ -130,10 +130,8 @@ def _of_colours(name: str, columns: list[PointValues]) -> Scalars:
 
 
 def by_group(fiblets: FibletSet) -> Scalars:
-    """Number the streamlines by the first of their groups; NaN for those without a group.
-
-    Hidden groups come last. Colours are as in the list of bundles: a group's own, or one by its place.
-    """
+    """Number the streamlines by the first of their groups; NaN for those without a group."""
+    # Hidden groups come last. Colours are as in the list of bundles: a group's own, or one by its place.
     from pvfiblets.query.bundles.bundle_list import first_groups, group_colours
 
     if not fiblets.groups:

@@ -32,11 +32,9 @@ if TYPE_CHECKING:
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
 
-MOST_POINTS = 400_000
-"""Of spline tubes: they take 50 bytes for each on the GPU, fiblets two."""
+MOST_POINTS = 400_000  # of spline tubes: they take 50 bytes for each on the GPU, fiblets two
 
-SHADES = ("ambient_occlusion", "depth_cue")
-"""Names of effects whose defaults are the extent of all that the owner has."""
+SHADES = ("ambient_occlusion", "depth_cue")  # names of effects whose defaults are the extent of all that the owner has
 
 
 class _OfAll:
@@ -57,45 +55,23 @@ class _OfAll:
 
 @dataclass(frozen=True, eq=False)
 class _Splines:
-    """What spline tubes are made of.
+    """What spline tubes are made of."""
 
-    Attributes
-    ----------
-    values : str or None
-        Name of the per-point value that they are coloured by.
-    """
-
-    values: str | None
+    values: str | None  # name of the per-point value that they are coloured by
 
 
 class SelectionOverlay:
-    """A second actor for some of an actor's streamlines.
-
-    Parameters
-    ----------
-    owner : FibletActor
-        Whose streamlines they are.
-    ids : numpy.ndarray
-        ``(n,)`` int64, rising.
-    color : tuple of float, optional
-        One colour for all; the owner's colours by default.
-    width : float
-        Pixels of the lines.
-    radius : float, optional
-        Of tubes (mm) in place of lines.
-    outline : tuple of float, optional
-        RGB of an outline around all.
-    """
+    """A second actor for some of an actor's streamlines."""
 
     def __init__(
         self,
-        owner: SelectableActor,
-        ids: np.ndarray,
+        owner: SelectableActor,  # whose streamlines they are
+        ids: np.ndarray,  # `(n,)` int64, rising
         *,
-        color: tuple[float, ...] | None,
-        width: float,
-        radius: float | None = None,
-        outline: tuple[float, float, float] | None = None,
+        color: tuple[float, ...] | None,  # one colour for all; the owner's colours by default
+        width: float,  # pixels of the lines
+        radius: float | None = None,  # of tubes (mm) in place of lines
+        outline: tuple[float, float, float] | None = None,  # RGB of an outline around all
     ) -> None:
         self.ids = ids
         self._owner = weak(owner)

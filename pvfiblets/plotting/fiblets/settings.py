@@ -10,14 +10,11 @@ from pvfiblets.plotting.fiblets.looks import check_look
 from pvfiblets.plotting.setting_places import COLOURS, LATER, MAPPER, OPTIONS, OWN, Effect, Switch
 from pvfiblets.plotting.settings import Row, Setting, Settings, number, truth
 
-STYLES = ("surface", "halo", "ink", "density")
-"""Values of :attr:`FibletSettings.style`."""
+STYLES = ("surface", "halo", "ink", "density")  # values of `FibletSettings.style`
 
-TONES = ("log", "sqrt", "linear")
-"""Values of :attr:`FibletSettings.density_tone`."""
+TONES = ("log", "sqrt", "linear")  # values of `FibletSettings.density_tone`
 
-ALL = "all"
-"""Default of :attr:`FibletSettings.transparency`."""
+ALL = "all"  # default of `FibletSettings.transparency`
 
 
 def _radii(data: Any) -> tuple[float, float]:
@@ -30,8 +27,7 @@ def _clim_span(actor: Any) -> tuple[float, float]:
     return scalars.range if scalars is not None and scalars.mapped else actor.clim
 
 
-THINNEST, WIDEST = 1e-3, 64.0
-"""Limits of line widths, pixels; a VTK property may exceed them."""
+THINNEST, WIDEST = 1e-3, 64.0  # limits of line widths, pixels; a VTK property may exceed them
 
 
 def _line_width(name: str, width: Any) -> float:

@@ -13,44 +13,23 @@ from pvfiblets.plotting.region_sources import direction_of
 if TYPE_CHECKING:
     from pvfiblets.plotting.fiblets.actor import FibletActor
 
-__all__ = ["FibletSlab"]
-
 
 class FibletSlab:
     """A slab that actors are cut to; ``plotter.fiblets.add_slab`` makes it.
 
     Its properties may be set at any time and show with the next render.
-
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-        Where the slice is drawn.
-    actors : sequence of FibletActor
-        What is cut.
-    name : str
-        Of the cut in each actor.
-    normal : str or (3,) array
-        ``"x"``, ``"y"``, ``"z"``, or a direction.
-    origin : float or (3,) array
-        A point of the middle plane, or how far along the normal it is, mm.
-    thickness : float
-        mm.
-    volume : pyvista.DataSet, optional
-        Drawn where the middle plane cuts it.
-    **mesh_options
-        For :meth:`pyvista.Plotter.add_mesh` of the slice.
     """
 
     def __init__(
         self,
-        plotter: Any,
-        actors: Sequence[FibletActor],
-        name: str,
+        plotter: Any,  # where the slice is drawn
+        actors: Sequence[FibletActor],  # the fiblets to cut
+        name: str,  # of the cut in each actor
         *,
-        normal: Any,
-        origin: Any,
-        thickness: float,
-        volume: Any = None,
+        normal: Any,  # (3,): `"x"`, `"y"`, `"z"`, or a direction
+        origin: Any,  # (3,): A point of the middle plane, or how far along the normal it is, mm
+        thickness: float,  # mm
+        volume: Any = None,  # drawn where the middle plane cuts it
         **mesh_options: Any,
     ) -> None:
         self._plotter = plotter

@@ -11,8 +11,7 @@ from pvfiblets.plotting.settings import Argument, Setting, Settings, truth
 if TYPE_CHECKING:
     from pvfiblets.plotting.halos.style import Threshold
 
-WIDTH_CUE = 0.5
-"""Default reduction of the width of the farthest lines."""
+WIDTH_CUE = 0.5  # default reduction of the width of the farthest lines
 
 
 class _Looks(Place):

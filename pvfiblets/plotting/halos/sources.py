@@ -33,8 +33,7 @@ from pvfiblets.plotting.scalars import (
 from pvfiblets.streamlines import Streamlines
 
 ARC_LENGTH, LENGTH = "arc_length", "length"
-BUILT_IN = (*DIRECTIONS, ARC_LENGTH, LENGTH)
-"""Of lines. Points have nothing but what they were given."""
+BUILT_IN = (*DIRECTIONS, ARC_LENGTH, LENGTH)  # of lines. Points have nothing but what they were given.
 
 Drawn: TypeAlias = HaloLines | HaloPoints
 

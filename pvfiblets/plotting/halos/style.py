@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 
     Threshold: TypeAlias = float | Sequence[float | None] | None
 
-TAPERED = (2, 0.2)
-"""Vertices over which ends narrow, and where along the mask those end: the paper's (section 3.4)."""
+TAPERED = (2, 0.2)  # vertices over which ends narrow, and where along the mask those end: the paper's (section 3.4)
 
 _OF_POINTS = (("line_width", "point_size"), ("strip_width", "halo_size"))
 

@@ -23,8 +23,7 @@ Place = Callable[[], "tuple[Array, Array] | None"]
 
 MOST_POINTS = 1_500_000
 """Points of a slice's surfaces; the number of glyphs sets the detail of each sphere, from 2,562 points down to 42."""
-LINE_PERCENTILE = 99.0
-"""Percentile of the lengths of an image's peaks: it is as long as a voxel."""
+LINE_PERCENTILE = 99.0  # percentile of the lengths of an image's peaks: it is as long as a voxel
 SAMPLED = 200_000
 N_COLOURS = 256
 

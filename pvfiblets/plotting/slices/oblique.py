@@ -27,30 +27,19 @@ __all__ = ["NAME", "ObliqueSlice", "Trace", "add_oblique_slice", "turned_about"]
 
 Array = npt.NDArray[np.float64]
 
-NAME = "oblique"
-"""Name of the plane and of its pane."""
+NAME = "oblique"  # name of the plane and of its pane
 
-HANDLE = 0.36
-"""Distance of handles from the cross-hair, per the smaller side of a pane."""
+HANDLE = 0.36  # distance of handles from the cross-hair, per the smaller side of a pane
 HANDLE_RADIUS, REACH = 5.0, 14.0
 """Pixels: how large handles are drawn, and how near one takes hold of them, which fingers do, too."""
-GAP = 12.0
-"""Pixels of the line's middle that stay free for the cross-hair's."""
-FLATTEST = 1e-3
-"""Sine of the angle below which a pane lies in the slice, and no line shows where they meet."""
+GAP = 12.0  # pixels of the line's middle that stay free for the cross-hair's
+FLATTEST = 1e-3  # sine of the angle below which a pane lies in the slice, and no line shows where they meet
 
 _RING = 12
 
 
 class Trace:
-    """The line in which the oblique slice cuts a pane.
-
-    Parameters
-    ----------
-    pane : Pane
-    plane : SlicePlane
-    color : color-like
-    """
+    """The line in which the oblique slice cuts a pane."""
 
     def __init__(self, pane: Pane, plane: SlicePlane, color: Any) -> None:
         self.pane, self._plane = pane, plane
@@ -133,24 +122,16 @@ class ObliqueSlice:
     """The oblique slice of a workspace; ``workspace.add_oblique(...)`` makes it.
 
     Its properties may be set at any time and show with the next render.
-
-    Attributes
-    ----------
-    plane : SlicePlane
-        In the 3-D view.
-    pane : Pane or None
-        None where the plotter has no fifth view.
-    drag : int or None
-        Which drag of a handle turns it now, counted from 1; None while none is held.
     """
 
     def __init__(self, workspace: Workspace, plane: SlicePlane, pane: Pane | None, color: Any) -> None:
         self._workspace: Any = weakref.proxy(workspace)
-        self.plane, self.pane = plane, pane
+        # none where the plotter has no fifth view
+        self.plane, self.pane = plane, pane  # in the 3-D view
         self.traces = {
             name: Trace(one, plane, color) for name, one in workspace.panes.items() if one.plane is not plane
         }
-        self.drag: int | None = None
+        self.drag: int | None = None  # which drag of a handle turns it now, counted from 1; None while none is held
         self._drags = 0
         self._widget: Any = None
         self._callbacks: list[Callable[[Array], None]] = []

@@ -25,20 +25,14 @@ __all__ = ["Pane"]
 
 Array = npt.NDArray[np.float64]
 
-FILLED = 1.05
-"""Height or width of the window per that of the images, to begin with."""
+FILLED = 1.05  # height or width of the window per that of the images, to begin with
 MOST_PIXELS = 4096
-GAP = 6.0
-"""Pixels of the cross-hair's middle that stay free."""
-BACKING = 0.65
-"""Opacity of the background of text."""
-BEFORE = 1.0
-"""mm from the slab to the cross-hair and to the slice."""
-FARTHEST = 1000.0
-"""mm from the slice to the camera."""
+GAP = 6.0  # pixels of the cross-hair's middle that stay free
+BACKING = 0.65  # opacity of the background of text
+BEFORE = 1.0  # mm from the slab to the cross-hair and to the slice
+FARTHEST = 1000.0  # mm from the slice to the camera
 
-_LEFT, _RIGHT, _TOP, _BOTTOM, _SAID = 6, 5, 7, 4, 0
-"""Places of a ``vtkCornerAnnotation``."""
+_LEFT, _RIGHT, _TOP, _BOTTOM, _SAID = 6, 5, 7, 4, 0  # places of a `vtkCornerAnnotation`
 
 
 class Pane:

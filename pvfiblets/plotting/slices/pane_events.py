@@ -34,17 +34,10 @@ _TYPED = re.compile(r"^\s*(v?)\s*([^v]*)$")
 
 
 class PaneEvents:
-    """Gestures of one workspace.
-
-    Parameters
-    ----------
-    workspace : Workspace
-        Not kept alive.
-    plotter : pyvista.Plotter
-    """
+    """Gestures of one workspace."""
 
     def __init__(self, workspace: Workspace, plotter: Any) -> None:
-        self._workspace = weakref.proxy(workspace)
+        self._workspace = weakref.proxy(workspace)  # not kept alive
         self._interactor = plotter.iren.interactor
         self._dragging: tuple[str, Pane, tuple[int, int]] | None = None
         self._handle: int | None = None

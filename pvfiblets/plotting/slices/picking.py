@@ -11,8 +11,6 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from pvfiblets.plotting.slices.plane import SlicePlane
 
-__all__ = ["picked_on_planes"]
-
 
 def picked_on_planes(renderer: Any, planes: Iterable[SlicePlane], x: float, y: float) -> npt.NDArray[np.float64] | None:
     """Return the place nearest to the viewer where a pixel shows a slice."""

@@ -25,10 +25,8 @@ __all__ = ["SliceActor", "SlicePlane", "before_render", "on_events", "prepare"]
 
 Array = npt.NDArray[np.float64]
 
-OVERSAMPLED = 2
-"""Pixels of a slice in the 3-D view along the finest voxel of all layers."""
-MOST_ACROSS = 768
-"""Pixels along a side of a slice in the 3-D view, whatever its voxels are."""
+OVERSAMPLED = 2  # pixels of a slice in the 3-D view along the finest voxel of all layers
+MOST_ACROSS = 768  # pixels along a side of a slice in the 3-D view, whatever its voxels are
 
 _PREPARE = "UserEvent"
 
@@ -192,10 +190,8 @@ class SlicePlane:
 
 
 def before_render(renderer: Any, owner: Any, method: str) -> Any:
-    """Call an owner's method whenever a renderer begins to draw; returns and rules as of :func:`on_events`.
-
-    :func:`prepare` calls it, too, for renderers that may have nothing to draw.
-    """
+    """Call an owner's method whenever a renderer begins to draw; returns and rules as of :func:`on_events`."""
+    # `prepare` calls it, too, for renderers that may have nothing to draw.
     return on_events(renderer, ("StartEvent", _PREPARE), owner, method)
 
 

@@ -17,25 +17,13 @@ from vtkmodules.vtkImagingCore import vtkImageReslice
 
 from pvfiblets.slices.frames import PlaneGrid
 
-__all__ = ["INTERPOLATIONS", "Resampler"]
-
 INTERPOLATIONS = ("nearest", "linear", "cubic")
 
-_MODES = {"nearest": 0, "linear": 1, "cubic": 3}
-"""VTK_RESLICE_NEAREST, VTK_RESLICE_LINEAR, VTK_RESLICE_CUBIC."""
+_MODES = {"nearest": 0, "linear": 1, "cubic": 3}  # VTK_RESLICE_NEAREST, VTK_RESLICE_LINEAR, VTK_RESLICE_CUBIC
 
 
 class Resampler:
-    """What one volume of an image, or some of its components, is at pixels of planes.
-
-    Parameters
-    ----------
-    values : numpy.ndarray
-        ``(nx, ny, nz)`` or ``(nx, ny, nz, n)``. Not copied if it lies in memory as files of NIfTI do, first axis
-        fastest, in this machine's order of bytes.
-    inverse : numpy.ndarray
-        ``(4, 4)`` mm to voxel indices.
-    """
+    """What one volume of an image, or some of its components, is at pixels of planes."""
 
     def __init__(self, values: npt.NDArray[Any], inverse: npt.NDArray[np.float64]) -> None:
         kind = values.dtype
@@ -52,7 +40,7 @@ class Resampler:
         image = self._image = vtkImageData()
         image.SetDimensions(*values.shape[:3])
         image.GetPointData().SetScalars(numpy_to_vtk(self._flat))
-        self._inverse = inverse
+        self._inverse = inverse  # `(4, 4)` mm to voxel indices
         self._reslice = vtkImageReslice()
         self._reslice.SetInputData(image)
         self._reslice.SetOutputDimensionality(2)

@@ -10,8 +10,6 @@ from pvfiblets.plotting.setting_places import Place
 from pvfiblets.plotting.settings import Argument, Row, Setting, Settings, truth
 from pvfiblets.plotting.shared_settings import LIMITS, MAPS, Common, colour_map
 
-__all__ = ["LAYER", "MEANING", "SliceCommon", "SliceSettings"]
-
 
 class _Layer(Place):
     """A value of the layer's own; its slices are made anew with the next render."""
@@ -26,8 +24,7 @@ class _Layer(Place):
 LAYER = _Layer()
 
 
-MEANING = "meaning"
-"""A row of the page that is no setting of layers: what the numbers of the image mean."""
+MEANING = "meaning"  # A row of the page that is no setting of layers: what the numbers of the image mean
 
 
 def _of(*meanings: str) -> Any:

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from pvfiblets.regions import Region
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
-__all__ = ["tube_parts"]
-
 _ALL_OF_THEM = 1 << 60
 
 

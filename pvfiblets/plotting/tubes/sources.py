@@ -92,12 +92,8 @@ def with_built_in(tubes: SplineTubes, scalars: Any) -> SplineTubes:
 def with_node_values(
     tubes: SplineTubes, scalars: Any, *, rgb: bool | None = None, data: SourceData | None = None
 ) -> tuple[SplineTubes, Any]:
-    """Store ``scalars`` with the tubes if they are an array with a row for each node, or name one of their source.
-
-    Notes
-    -----
-    The slope at a node is the mean of those of the segments that meet there.
-    """
+    """Store ``scalars`` with the tubes if they are an array with a row for each node, or name one of their source."""
+    # The slope at a node is the mean of those of the segments that meet there.
     if is_image(scalars) and not (isinstance(scalars, str) and scalars in {**tubes.values, **tubes.tube_values}):
         image = as_image(scalars)
         return _with_rows(tubes, image.name or "volume", image.at(tubes.points))

@@ -47,15 +47,7 @@ OF_SURFACES = ("ambient_occlusion", "ray_occlusion")
 
 
 class PlottedRaycast(Plotted[Options], VolumeMapper):
-    """A mapper of a volume that rays are cast through, with scalar bars.
-
-    Parameters
-    ----------
-    volume : RaycastVolume
-        What to draw.
-    casting : RaycastOptions
-        How.
-    """
+    """A mapper of a volume that rays are cast through, with scalar bars."""
 
     dataset = NoSetting(NO_ATTRIBUTE + "actor.volume holds values and place; actor.update(image) draws others")
     scalar_map_mode = NoSetting(NO_ATTRIBUTE + "as_raycast_volume(image, scalars=...) chooses the array")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["BLENDING", "mode_of_blending"]
-
 BLENDING = {"composite": "composite", "maximum": "mip", "minimum": "minimum", "average": "average"}
 """Modes by the words of ``Plotter.add_volume``."""
 

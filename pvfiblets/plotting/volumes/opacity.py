@@ -11,18 +11,6 @@ import numpy as np
 import pyvista as pv
 from pyvista.plotting.tools import opacity_transfer_function
 
-__all__ = [
-    "along_logarithm",
-    "from_logarithm",
-    "is_number",
-    "number",
-    "opacities",
-    "surface_colours",
-    "surface_opacities",
-    "surface_values",
-    "value_limits",
-]
-
 
 def is_number(given: Any) -> bool:
     """Whether something is one number."""

@@ -16,8 +16,6 @@ from pvfiblets.plotting.volumes.settings import LIGHT, SURFACE
 if TYPE_CHECKING:
     from pvfiblets.plotting.volumes.actor import VolumeActor
 
-__all__ = ["PropertyAttributes", "tell_given"]
-
 _PEAKS = "what peaks and projections show is the colour of a value, which no lamp shines on"
 _RAYS = "rays through a volume have neither lines nor points"
 
@@ -29,10 +27,8 @@ class _Word:
     vtk: str
     used: tuple[str, ...]
     instead: str
-    light: str = ""
-    """Message where light could use it, and its ``shade`` is off; empty: light never uses it."""
-    reset: bool = False
-    """Whether the old value is restored, because VTK would draw something else by the new one."""
+    light: str = ""  # message where light could use it, and its `shade` is off; empty: light never uses it
+    reset: bool = False  # whether the old value is restored, because VTK would draw something else by the new one
 
 
 _PEAK_MODES = ("mip", "local-mip", "minimum", "average")
@@ -56,13 +52,7 @@ _WORDS = {
 
 
 class PropertyAttributes:
-    """The last state of an actor's property.
-
-    Parameters
-    ----------
-    actor : VolumeActor
-        Whole, with its property.
-    """
+    """The last state of an actor's property."""
 
     def __init__(self, actor: VolumeActor) -> None:
         self.note(actor)

@@ -18,8 +18,7 @@ _CURVES = ("linear", "linear_r", "geom", "geom_r", "sigmoid", "sigmoid_3", "sigm
            "sigmoid_20", "foreground")  # fmt: skip
 
 
-SURFACE, LIGHT = "isosurface", "composite"
-"""Modes."""
+SURFACE, LIGHT = "isosurface", "composite"  # modes
 
 
 class _Casting(Place):

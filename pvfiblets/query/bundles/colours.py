@@ -8,15 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["as_colour", "distinct_colour", "distinct_colours", "hex_colour"]
-
 
 def distinct_colours(count: int) -> npt.NDArray[np.float64]:
-    """Return n bright colours, (n, 3) from 0 to 1, with different neighbours.
-
-    The hues are multiples of the golden ratio, so that no two of the first thousands are the same; saturation and
-    brightness change with a rhythm of their own.
-    """
+    """Return n bright colours, (n, 3) from 0 to 1, with different neighbours."""
+    # The hues are multiples of the golden ratio, so that no two of the first thousands are the same; saturation and
+    # brightness change with a rhythm of their own.
     return _colours(np.arange(count))
 
 

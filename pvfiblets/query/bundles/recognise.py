@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["recognise"]
 
 Ints = npt.NDArray[np.int64]
-LEAST = 5
-"""Streamlines of a model, below which nothing can be aligned to it."""
+LEAST = 5  # streamlines of a model, below which nothing can be aligned to it
 
 
 def recognise(

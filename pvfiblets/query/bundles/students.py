@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["student_quantile"]
-
 
 def _share(t: float, freedom: int) -> float:
     """Probability of a value between -t and t: Abramowitz and Stegun 1964, equations 26.7.3 and 26.7.4."""

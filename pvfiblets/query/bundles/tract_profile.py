@@ -35,8 +35,7 @@ __all__ = ["TractProfile", "Weights", "average_profiles", "core_weights", "profi
 
 Floats = npt.NDArray[np.float64]
 Weights = Literal["core", "equal"]
-MOST = 1 << 27
-"""Places, streamlines times places along them, that are held together: 3 GB."""
+MOST = 1 << 27  # places, streamlines times places along them, that are held together: 3 GB
 
 
 @dataclass(frozen=True, eq=False)

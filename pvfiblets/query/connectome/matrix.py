@@ -33,14 +33,10 @@ if TYPE_CHECKING:
 
 __all__ = ["STATISTICS", "SUFFIXES", "Connectome", "connectome", "end_labels"]
 
-STATISTICS = ("sum", "mean", "min", "max")
-"""Statistics that turn the numbers of one pair's streamlines into one."""
-SUFFIXES = (".csv", ".tsv", ".txt", ".npy")
-"""Suffixes of files that a connectome is written to."""
-MOST_VOXELS = 1 << 20
-"""Voxels that may be looked at about an end."""
-TOGETHER = 1 << 18
-"""Ends that are given their parcels together."""
+STATISTICS = ("sum", "mean", "min", "max")  # statistics that turn the numbers of one pair's streamlines into one
+SUFFIXES = (".csv", ".tsv", ".txt", ".npy")  # suffixes of files that a connectome is written to
+MOST_VOXELS = 1 << 20  # voxels that may be looked at about an end
+TOGETHER = 1 << 18  # ends that are given their parcels together
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]

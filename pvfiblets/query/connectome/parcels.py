@@ -14,8 +14,6 @@ from ..selection.endpoints import end_points
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["end_parcels"]
-
 
 def end_parcels(fiblets: FibletSet, atlas: Any, names: Mapping[int, str] | None = None) -> npt.NDArray[np.str_]:
     """Name the two parcels in which each streamline ends, whichever end comes first.

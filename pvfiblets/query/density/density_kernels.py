@@ -27,10 +27,8 @@ COUNT, AMOUNT, DIRECTION, VALUE = 0, 1, 2, 3
 
 @parallel_kernel
 def place(points: Any, line: Any, corner: Any, linear: Any, u: Any, lengths: Any) -> int:
-    """Positions in voxels ``u`` (n, 3), and lengths (n,) in mm of the segments that begin at points.
-
-    Returns how many points are not finite, or so far from the next one that the length is not.
-    """
+    """Positions in voxels ``u`` (n, 3), and lengths (n,) in mm of the segments that begin at points."""
+    # Returns how many points are not finite, or so far from the next one that the length is not.
     n = len(points)
     n_blocks = (n + BLOCK - 1) // BLOCK
     bad = np.zeros(n_blocks, np.int64)
@@ -76,10 +74,8 @@ def cut(
     u: Any, line: Any, lengths: Any, shape: Any, starts: Any, a: int, b: int, voxel: Any, item: Any, part: Any,
     middle: Any,
 ) -> float:  # fmt: skip
-    """Cut the segments of items ``a`` to ``b`` at the faces of voxels.
-
-    The loop is that of :func:`.voxel_walk_kernels.walk`, written out: through its arrays, maps take a quarter longer.
-    """
+    """Cut the segments of items ``a`` to ``b`` at the faces of voxels."""
+    # The loop is that of `.voxel_walk_kernels.walk`, written out: through its arrays, maps take a quarter longer.
     nx, ny, nz = shape
     n_blocks = (b - a + BLOCK - 1) // BLOCK
     inside_mm = np.zeros(n_blocks)
@@ -133,10 +129,8 @@ def cut(
 
 @kernel
 def cut_ends(u: Any, offsets: Any, shape: Any, voxel: Any, item: Any, part: Any, middle: Any) -> None:
-    """Pieces of :func:`cut` that are the streamlines' end points: two each, all arrays ``(2 * n_streamlines,)``.
-
-    A streamline of one point has one end, one without points none.
-    """
+    """Pieces of :func:`cut` that are the streamlines' end points: two each, all arrays ``(2 * n_streamlines,)``."""
+    # A streamline of one point has one end, one without points none.
     nx, ny = shape[0], shape[1]
     for s in range(len(offsets) - 1):
         first, last = offsets[s], offsets[s + 1] - 1
@@ -155,10 +149,8 @@ def add_up(
     what: int, by_length: Any, tiles: int, n: int, voxel: Any, item: Any, part: Any, middle: Any, points: Any,
     line: Any, lengths: Any, weights: Any, values: Any, per_point: Any, base: int, visitor: Any, sums: Any,
 ) -> None:  # fmt: skip
-    """Add pieces to sums over voxels, in their order whatever the number of threads.
-
-    Each thread looks at all pieces, and adds the pieces in its own voxels: reading costs far less than adding.
-    """
+    """Add pieces to sums over voxels, in their order whatever the number of threads."""
+    # Each thread looks at all pieces, and adds the pieces in its own voxels: reading costs far less than adding.
     for own in numba.prange(tiles):
         for r in range(n):
             v = voxel[r]
@@ -193,10 +185,8 @@ def add_up(
 
 @kernel
 def count_visits(n: int, voxel: Any, item: Any, owner: Any, visitor: Any, counts: Any) -> None:
-    """Add to ``counts`` the voxels that each owner visits; ``owner`` (of each item) never falls from call to call.
-
-    ``visitor`` (n_voxels,) is the last visitor of a voxel, from 1 on.
-    """
+    """Add to ``counts`` the voxels that each owner visits; ``owner`` (of each item) never falls from call to call."""
+    # `visitor` (n_voxels,) is the last visitor of a voxel, from 1 on.
     for r in range(n):
         v = voxel[r]
         if v >= 0 and visitor[v] != owner[item[r]] + 1:

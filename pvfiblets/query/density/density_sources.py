@@ -41,34 +41,20 @@ ANY = 1 << 62  # an unknown number of streamlines
 
 @dataclass(frozen=True)
 class Part:
-    """Some streamlines.
+    """Some streamlines."""
 
-    Attributes
-    ----------
-    points : numpy.ndarray
-        ``(n_points, 3)`` float64, mm.
-    offsets : numpy.ndarray
-        ``(n + 1,)`` int64.
-    weights : numpy.ndarray
-        ``(n,)`` float64.
-    values : numpy.ndarray
-        ``(n_points,)`` or ``(n,)`` float64; empty where none are wanted.
-    """
-
-    points: Floats
-    offsets: npt.NDArray[np.int64]
-    weights: Floats
-    values: Floats
+    points: Floats  # `(n_points, 3)` float64, mm
+    offsets: npt.NDArray[np.int64]  # `(n + 1,)` int64
+    weights: Floats  # `(n,)` float64
+    values: Floats  # `(n_points,)` or `(n,)` float64; empty where none are wanted
 
 
 class Source(Protocol):
     """The source of density maps."""
 
-    name: str
-    """Name of the values."""
+    name: str  # name of the values
     unit: str
-    per_point: bool
-    """Whether values are of points, or of streamlines."""
+    per_point: bool  # whether values are of points, or of streamlines
 
     @property
     def most_streamlines(self) -> int:

@@ -22,8 +22,7 @@ __all__ = ["SUFFIXES", "check_suffix", "image_of", "write_map"]
 
 NIFTI, MIF, VTI = (".nii", ".nii.gz"), (".mif", ".mif.gz"), (".vti",)
 SUFFIXES = (*NIFTI, *MIF, *VTI)
-NIFTI1_MOST = 32767
-"""Voxels along an axis that a NIfTI-1 header can name."""
+NIFTI1_MOST = 32767  # voxels along an axis that a NIfTI-1 header can name
 
 Array = npt.NDArray[np.float64]
 

@@ -201,13 +201,7 @@ class _Sums:
 
 
 class Visits:
-    """How many voxels of a grid each of some bundles visits.
-
-    Parameters
-    ----------
-    grid : VoxelGrid
-    n_bundles : int
-    """
+    """How many voxels of a grid each of some bundles visits."""
 
     def __init__(self, grid: VoxelGrid, n_bundles: int) -> None:
         _check_memory(grid, 4 * grid.n_voxels)
@@ -217,10 +211,8 @@ class Visits:
         _compile(self._visitor.dtype)
 
     def add(self, points: npt.NDArray[np.floating[Any]], line: Any, owner: Any) -> None:
-        """Add points, ``(n, 3)`` mm: ``line`` is the streamline of each, ``owner`` its bundle, which never falls.
-
-        Points that are not finite end a line.
-        """
+        """Add points, ``(n, 3)`` mm: ``line`` is the streamline of each, ``owner`` its bundle, which never falls."""
+        # Points that are not finite end a line.
         from . import density_kernels as kernels
 
         known = np.isfinite(points).all(axis=1)

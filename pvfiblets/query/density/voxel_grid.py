@@ -18,8 +18,7 @@ __all__ = ["VoxelGrid", "grid_about", "grid_like"]
 
 Array = npt.NDArray[np.float64]
 
-MOST = 1 << 40
-"""Largest number of voxels."""
+MOST = 1 << 40  # largest number of voxels
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,25 +27,12 @@ class VoxelGrid:
 
     Voxel (i, j, k) holds the positions whose indices ``v = inverse(affine) p`` have ``i - 1/2 <= v_1 < i + 1/2``, and
     so on: a position on a face belongs to the voxel above it.
-
-    Parameters
-    ----------
-    shape : tuple of int
-        ``(nx, ny, nz)``.
-    affine : array_like
-        ``(4, 4)`` voxel indices, whole at the voxels' centres as in NIfTI, to mm; may be oblique, flipped or sheared.
-    space_code : int
-        NIfTI's code of the space that these mm are of; 1 is the scanner's.
-
-    Raises
-    ------
-    ValueError
-        If the affine cannot be inverted, or a side is no whole number above 0.
     """
 
-    shape: tuple[int, int, int]
+    shape: tuple[int, int, int]  # `(nx, ny, nz)`
+    # `(4, 4)` voxel indices, whole at the voxels' centres as in NIfTI, to mm; may be oblique, flipped or sheared
     affine: Array
-    space_code: int = 1
+    space_code: int = 1  # NIfTI's code of the space that these mm are of; 1 is the scanner's
     linear: Array = field(init=False, repr=False)  # (3, 3) mm to voxels
 
     def __post_init__(self) -> None:
@@ -71,10 +57,8 @@ class VoxelGrid:
 
 
 def grid_about(low: npt.ArrayLike, high: npt.ArrayLike, voxel_size: float | npt.ArrayLike) -> VoxelGrid:
-    """Return the grid along the axes of space that holds a box.
-
-    Faces lie at whole multiples of the voxel's size, so that grids of one size fit each other.
-    """
+    """Return the grid along the axes of space that holds a box."""
+    # Faces lie at whole multiples of the voxel's size, so that grids of one size fit each other.
     size = np.asarray(voxel_size, np.float64)
     if size.shape not in ((), (3,)) or not np.isfinite(size).all() or not (size > 0.0).all():
         raise ValueError(f"voxel_size is {voxel_size!r}; give a finite number of mm above 0, or three")

@@ -15,8 +15,6 @@ from typing import Any
 
 from ...codec.jit import kernel
 
-__all__ = ["clip", "end_voxels", "faces", "voxel_along", "walk", "within"]
-
 
 @kernel
 def within(u: Any, i: int, shape: Any) -> bool:
@@ -71,10 +69,8 @@ def end_voxels(u: Any, i: int, shape: Any, enter: float, leave: float) -> Any:
 
 @kernel
 def faces(u: Any, i: int, k: int, first: int, last: int) -> Any:
-    """Return for one axis: the first face crossed, the step to the next, their number, and the segment's extent.
-
-    ``first`` and ``last`` are rounded where the segment enters and leaves the grid; they never make it turn back.
-    """
+    """Return for one axis: the first face crossed, the step to the next, their number, and the segment's extent."""
+    # `first` and `last` are rounded where the segment enters and leaves the grid; they never make it turn back.
     d = u[i + 1, k] - u[i, k]
     if d > 0.0:
         return first + 1, 1, max(last - first, 0), d
@@ -83,10 +79,8 @@ def faces(u: Any, i: int, k: int, first: int, last: int) -> Any:
 
 @kernel
 def walk(u: Any, i: int, shape: Any, strides: Any, on: Any, stops: Any) -> Any:
-    """Voxels on the way from ``u[i]`` to ``u[i + 1]``, in order: how many, and the share where the first begins.
-
-    A voxel counts if some length of the segment lies in it, or one of its ends.
-    """
+    """Voxels on the way from ``u[i]`` to ``u[i + 1]``, in order: how many, and the share where the first begins."""
+    # A voxel counts if some length of the segment lies in it, or one of its ends.
     sx, sy, sz = strides
     one, other = within(u, i, shape), within(u, i + 1, shape)
     enter, leave = 0.0, 1.0

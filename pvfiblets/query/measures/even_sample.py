@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from ...images.image import Image
 
-__all__ = ["longest_length", "mean_direction", "meets_image", "rounding_of"]
-
 _SAMPLE = 2000
 
 

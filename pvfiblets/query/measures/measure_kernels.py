@@ -44,10 +44,8 @@ def _length(points: Any, i: int) -> float:
 
 @parallel_kernel
 def curvatures(points: Any, offsets: Any, error: float, out: Any, bears: Any) -> None:
-    """Curvature at every point, ``(n_points,)``, 1/mm, over chords that an error of positions, mm, changes little.
-
-    ``bears`` ``(n,)`` is the error that each line's mean bears, mm: less than the one given where it is too short.
-    """
+    """Curvature at every point, ``(n_points,)``, 1/mm, over chords that an error of positions, mm, changes little."""
+    # `bears` `(n,)` is the error that each line's mean bears, mm: less than the one given where it is too short.
     for line in numba.prange(len(offsets) - 1):
         a, b = offsets[line], offsets[line + 1]
         for i in range(a, b):
@@ -114,11 +112,9 @@ def least(values: Any, offsets: Any, out: Any) -> None:
 
 @parallel_kernel
 def resample(points: Any, values: Any, offsets: Any, places: Any, found: Any) -> None:
-    """Positions and values at places of equal arc length along each streamline, its ends included.
-
-    ``values`` is ``(n_points,)`` float64; ``places`` ``(n, m, 3)`` and ``found`` ``(n, m)`` float64 are filled. A value
-    next to a point without one (NaN) is NaN. Where a streamline has no length, all places are its first.
-    """
+    """Positions and values at places of equal arc length along each streamline, its ends included."""
+    # `values` is `(n_points,)` float64; `places` `(n, m, 3)` and `found` `(n, m)` float64 are filled. A value next to a
+    # point without one (NaN) is NaN. Where a streamline has no length, all places are its first.
     for s in numba.prange(len(offsets) - 1):
         a, b, m = offsets[s], offsets[s + 1], found.shape[1]
         total = 0.0

@@ -62,8 +62,7 @@ __all__ = [
 Kind = Literal["streamline", "point"]
 Floats = npt.NDArray[np.float64]
 CODING_ERROR = "coding_error"
-CURVATURE = "_curvature"
-"""Attribute of a set, no field of it: a set that is made of another has other points."""
+CURVATURE = "_curvature"  # attribute of a set, no field of it: a set that is made of another has other points
 SLACK = 0.99  # of an error bound: it is a tenth of a step but for rounding
 UNCERTAIN = 0.05  # of the streamlines may be too short for their curvature: every set has some
 
@@ -76,21 +75,12 @@ COMPUTED: dict[Kind, dict[str, str]] = {
 
 @dataclass(frozen=True, eq=False)
 class Values:
-    """A value for each streamline or each point.
+    """A value for each streamline or each point."""
 
-    Attributes
-    ----------
-    kind : {'streamline', 'point'}
-        What has a value.
-    values : numpy.ndarray or PointValues
-        ``(n_streamlines,)`` float64; or ``(n_points,)`` float32 in coded order, codes where the set stores them.
-    name, unit : str
-        ``unit`` is empty where there is none or it is not known.
-    """
-
-    kind: Kind
+    kind: Kind  # streamlines or points
+    # `(n_streamlines,)` float64; or `(n_points,)` float32 in coded order, codes where the set stores them
     values: npt.NDArray[Any] | PointValues
-    name: str
+    name: str  # `unit` is empty where there is none or it is not known
     unit: str = ""
 
     def array(self) -> npt.NDArray[Any]:
@@ -290,13 +280,7 @@ def _placed(fiblets: FibletSet | Streamlines, ranked: Floats, without: float) ->
 
 
 class Curvatures:
-    """Curvature of streamlines, chunk by chunk; used as a context, it warns in the end of what could not be measured.
-
-    Parameters
-    ----------
-    data : FibletSet or Streamlines
-        All of them.
-    """
+    """Curvature of streamlines, chunk by chunk; as a context, it warns in the end of what could not be measured."""
 
     def __init__(self, data: FibletSet | Streamlines) -> None:
         if isinstance(data, Streamlines):

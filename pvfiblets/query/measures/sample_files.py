@@ -43,10 +43,8 @@ def write_samples(
     source: str, image: str, target: str, *, statistic: Statistic | None, weights: PointWeights, nearest: bool,
     name: str | None,
 ) -> tuple[npt.NDArray[np.float64], int]:  # fmt: skip
-    """Write the values of an image along streamlines, or the streamlines with these.
-
-    Return the values, and how many parts of the source reading left out.
-    """
+    """Write the values of an image along streamlines, or the streamlines with these."""
+    # Return the values, and how many parts of the source reading left out.
     suffix = check_target(target, statistic)  # before any work, not after
     taken = as_image(image)
     data = open_lines(source)

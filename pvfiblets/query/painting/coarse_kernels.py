@@ -19,10 +19,8 @@ from .walk_kernels import ANY, CHANGED, HERE
 
 __all__ = ["ADDED", "ALL_FLAGS", "GONE", "OPEN", "REMOVED", "SAME", "SURE", "close_parts", "settle"]
 
-ADDED, REMOVED, ALL_FLAGS = 0, 1, 2
-"""Query: of added or removed voxels, whether they are passed; otherwise all flags."""
-SAME, SURE, GONE, OPEN = 0, 1, 2, 3
-"""Nothing changes for a fiblet; it passes now; it does no more; it must be decoded."""
+ADDED, REMOVED, ALL_FLAGS = 0, 1, 2  # query: of added or removed voxels, whether they are passed; otherwise all flags
+SAME, SURE, GONE, OPEN = 0, 1, 2, 3  # nothing changes for a fiblet; it passes now; it does no more; it must be decoded
 BLOCK, FEW = 256, 16
 STEP = 0.7  # voxels between discs, at most
 WIDEST = 2.0  # voxels: a larger radius settles nothing
@@ -158,10 +156,8 @@ def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, ra
 @kernel
 def _part(u: Any, k: int, kept: Any, radius: float, rows: Any, slack: float, box: Any, mask: Any, shape: Any,
           touching: int, inside: int, steps: Any, first: Any, reach: Any, low: Any, high: Any) -> Any:  # fmt: skip
-    """Whether part ``k`` may meet voxels of the bit ``touching``, and surely meets voxels of the bit ``inside``.
-
-    ``inside`` 0: not asked.
-    """
+    """Whether part ``k`` may meet voxels of the bit ``touching``, and surely meets voxels of the bit ``inside``."""
+    # `inside` 0: not asked.
     for axis in range(3):
         reach[axis] = radius * rows[axis] * (1.0 + 1e-9) + slack
     enter, leave = _cut(u, k, reach, box)
@@ -235,10 +231,8 @@ def _clear(mean: Any, k: int, leaves: Any, leaf: int, rows: Any, slack: float, b
 @parallel_kernel
 def close_parts(near: Any, leaves: Any, parts: int, linear: Any, corner: Any, rows: Any, box: Any, free: Any,
                 found: Any) -> None:  # fmt: skip
-    """Bits of the parts of some leaves whose capsules come near voxels in a box, ``found (n,)`` uint8.
-
-    ``free`` is the box's :class:`.FreeSpace` about these voxels.
-    """
+    """Bits of the parts of some leaves whose capsules come near voxels in a box, ``found (n,)`` uint8."""
+    # `free` is the box's `.FreeSpace` about these voxels.
     steps, first = free
     nodes = parts + 1
     for block in numba.prange((len(near) + BLOCK - 1) // BLOCK):

@@ -8,15 +8,11 @@ import numpy as np
 
 from ...codec.jit import kernel
 
-__all__ = ["connected"]
-
 
 @kernel
 def connected(open_: Any, shape: Any, seed: int) -> Any:
-    """Flat places of open voxels that are joined to a seed by faces, ``(n,)`` int64; none if it is not open.
-
-    ``open_`` is flat in C order, bool; it is closed where the result goes.
-    """
+    """Flat places of open voxels that are joined to a seed by faces, ``(n,)`` int64; none if it is not open."""
+    # `open_` is flat in C order, bool; it is closed where the result goes.
     nx, ny, nz = shape
     found = np.empty(64, np.int64)
     if not open_[seed]:

@@ -12,24 +12,15 @@ import numpy.typing as npt
 
 __all__ = ["FAR", "FreeSpace"]
 
-FAR = 16
-"""Greatest stored distance; larger ones are stored as this."""
+FAR = 16  # greatest stored distance; larger ones are stored as this
 LARGE = 1 << 18  # voxels of a box from which distances are stored more coarsely
 
 
 class FreeSpace(NamedTuple):
-    """A lower bound of the distance to a set, for each voxel of a box.
+    """A lower bound of the distance to a set, for each voxel of a box."""
 
-    Attributes
-    ----------
-    steps : numpy.ndarray
-        ``(i, j, k)`` uint8 voxels to the nearest of the set: 0 in the set, :data:`FAR` at most.
-    first : numpy.ndarray
-        ``(3,)`` int64: the box's first voxel.
-    """
-
-    steps: npt.NDArray[np.uint8]
-    first: npt.NDArray[np.int64]
+    steps: npt.NDArray[np.uint8]  # `(i, j, k)` uint8 voxels to the nearest of the set: 0 in the set, `FAR` at most
+    first: npt.NDArray[np.int64]  # `(3,)` int64: the box's first voxel
 
     @classmethod
     def from_bits(cls, bits: npt.NDArray[np.uint8], bit: int, box: npt.ArrayLike, *, beyond: bool = False) -> FreeSpace:

@@ -21,10 +21,8 @@ __all__ = ["LEAF", "chords", "leaf_boxes", "leaf_pieces", "near_leaves", "next_a
 
 LEAF = 32
 BLOCK = 1024
-ROWS = 65
-"""Points that a record can name, and the next fiblet's first."""
-UP = 1.0 + 1e-6
-"""Rounds a length in float32 up."""
+ROWS = 65  # points that a record can name, and the next fiblet's first
+UP = 1.0 + 1e-6  # rounds a length in float32 up
 
 
 @kernel
@@ -175,10 +173,8 @@ def leaf_pieces(
     order: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any, parts: int,
     leaves: Any, pieces: Any, damaged: Any,
 ) -> None:  # fmt: skip
-    """Decode all fiblets and keep them coarsely; :class:`.FibletIndex` describes the filled arrays.
-
-    ``order (n,)`` are the fiblets, the other arrays as in :func:`.decode_kernels.decode`.
-    """
+    """Decode all fiblets and keep them coarsely; :class:`.FibletIndex` describes the filled arrays."""
+    # `order (n,)` are the fiblets, the other arrays as in `.decode_kernels.decode`.
     nodes = parts + 1
     for leaf in numba.prange(len(leaves)):
         first, many = leaf * LEAF, min(LEAF, len(order) - leaf * LEAF)

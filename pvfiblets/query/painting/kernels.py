@@ -9,8 +9,6 @@ import numpy as np
 from ...codec.kernel_cache import is_filled, mark_filled
 from ...streamlines import Streamlines
 
-__all__ = ["are_compiled", "compile_all"]
-
 _WORK, _HOME = "painting", Path(__file__).resolve().parent
 
 

@@ -26,8 +26,7 @@ __all__ = ["PaintedRegion", "RegionPainter", "Stroke"]
 
 Ints = npt.NDArray[np.int64]
 Flags = npt.NDArray[np.bool_]
-MOST_STEPS = 200
-"""Strokes that can be undone."""
+MOST_STEPS = 200  # strokes that can be undone
 
 
 @dataclass(frozen=True, eq=False)

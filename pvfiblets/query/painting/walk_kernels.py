@@ -19,8 +19,7 @@ __all__ = ["ANY", "BAD", "CHANGED", "DAMAGED", "FIRST", "HERE", "LAST", "OUT", "
 ANY, OUT, FIRST, LAST = 1, 2, 4, 8
 """Flags of a fiblet: some position lies in the region, some does not, its first point does, its last point does."""
 BAD, DAMAGED = 255, -(1 << 62)
-HERE, CHANGED = 1, 2
-"""Flags of a voxel: it is in the region, and this stroke changed it."""
+HERE, CHANGED = 1, 2  # flags of a voxel: it is in the region, and this stroke changed it
 BLOCK = 64
 
 
@@ -42,11 +41,9 @@ def _place(points: Any, a: int, b: int, linear: Any, corner: Any, u: Any) -> Non
 @parallel_kernel
 def look(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any,
          linear: Any, corner: Any, mask: Any, shape: Any, found: Any) -> None:  # fmt: skip
-    """Flags of fiblets: ``found (m,)`` uint8; :data:`BAD` for a record that points beyond the arrays.
-
-    ``order[places]`` are the fiblets, the arrays up to ``tables`` as in :func:`.decode_kernels.decode`; ``mask`` is
-    flat, in C order, 1 in the region.
-    """
+    """Flags of fiblets: ``found (m,)`` uint8; :data:`BAD` for a record that points beyond the arrays."""
+    # `order[places]` are the fiblets, the arrays up to `tables` as in `.decode_kernels.decode`; `mask` is flat, in C
+    # order, 1 in the region.
     most, strides = shape[0] + shape[1] + shape[2] + 4, (shape[1] * shape[2], shape[2], 1)
     for block in numba.prange((len(found) + BLOCK - 1) // BLOCK):
         p, u, on, stops = np.empty((ROWS, 3)), np.empty((ROWS, 3)), np.empty(most, np.int64), np.empty(most)
@@ -87,10 +84,8 @@ def _apart_from(u: Any, i: int, box: Any) -> bool:
 @parallel_kernel
 def passes(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any,
            linear: Any, corner: Any, mask: Any, bit: int, box: Any, shape: Any, found: Any) -> None:  # fmt: skip
-    """Whether fiblets meet voxels with a bit of ``mask``, all within ``box (6,)``; ``found (m,)`` uint8.
-
-    Other parameters, and what :data:`BAD` means, as for :func:`look`.
-    """
+    """Whether fiblets meet voxels with a bit of ``mask``, all within ``box (6,)``; ``found (m,)`` uint8."""
+    # Other parameters, and what `BAD` means, as for `look`.
     most, strides = shape[0] + shape[1] + shape[2] + 4, (shape[1] * shape[2], shape[2], 1)
     for block in numba.prange((len(found) + BLOCK - 1) // BLOCK):
         p, u, on, stops = np.empty((ROWS, 3)), np.empty((ROWS, 3)), np.empty(most, np.int64), np.empty(most)
@@ -116,10 +111,8 @@ def passes(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: An
 
 @parallel_kernel
 def lines_of(places: Any, order: Any, anchors: Any, bases: Any, ids: Any, lines: Any) -> None:
-    """Streamlines of the fiblets ``order[places]``, ``lines (m,)`` int64; -1 where a damaged file leads to none.
-
-    ``bases`` and ``ids`` lead to them (``ids`` empty: ranks are streamlines).
-    """
+    """Streamlines of the fiblets ``order[places]``, ``lines (m,)`` int64; -1 where a damaged file leads to none."""
+    # `bases` and `ids` lead to them (`ids` empty: ranks are streamlines).
     for k in numba.prange(len(places)):
         f = np.int64(order[places[k]])
         rank: Any = np.int64(bases[f >> PAGE_BITS] + ((anchors[f, 1] >> 16) & 0x3FFF))
@@ -131,12 +124,10 @@ def lines_of(places: Any, order: Any, anchors: Any, bases: Any, ids: Any, lines:
 @kernel
 def apply(places: Any, lines: Any, found: Any, order: Any, anchors: Any, states: Any, n_any: Any, n_out: Any,
           ends: Any) -> int:  # fmt: skip
-    """Take new flags of fiblets over; returns by how many more streamlines the region is passed.
-
-    ``order[places]`` are the fiblets, of :func:`lines_of`, ``states (n_fiblets,)`` the flags before, in that order. Of
-    streamlines, ``n_any, n_out`` count fiblets and ``ends`` holds FIRST and LAST. Where ``n_out`` is empty, only ANY is
-    told.
-    """
+    """Take new flags of fiblets over; returns by how many more streamlines the region is passed."""
+    # `order[places]` are the fiblets, of `lines_of`, `states (n_fiblets,)` the flags before, in that order. Of
+    # streamlines, `n_any, n_out` count fiblets and `ends` holds FIRST and LAST. Where `n_out` is empty, only ANY is
+    # told.
     more, whole = 0, len(n_out) > 0
     for k in range(len(places)):
         line, new = lines[k], found[k]

@@ -48,33 +48,18 @@ Array = npt.NDArray[np.float64]
 
 _PLANE, _SLAB, _BOX, _SPHERE, _SURFACE, _LABELS = range(6)
 _AND, _OR, _NOT = -1, -2, -3
-_EPS = 16.0 * 2.0**-52
-"""Relative float64 error of a ball's centre, a position in it, and their distance."""
+_EPS = 16.0 * 2.0**-52  # relative float64 error of a ball's centre, a position in it, and their distance
 
 
 @dataclass(frozen=True, eq=False)
 class Packed:
-    """A region as arrays; see the module for their columns.
+    """A region as arrays; see the module for their columns."""
 
-    Parameters
-    ----------
-    ops : numpy.ndarray
-        ``(n,)`` int32: the program.
-    rows : numpy.ndarray
-        ``(n_leaves, 20)`` float64.
-    grids : numpy.ndarray
-        ``(n_fields, 16)`` float64.
-    values : numpy.ndarray
-        float32: all fields' values.
-    fields : tuple of Field
-        Each once.
-    """
-
-    ops: npt.NDArray[np.int32]
-    rows: Array
-    grids: Array
-    values: npt.NDArray[np.float32]
-    fields: tuple[Field, ...]
+    ops: npt.NDArray[np.int32]  # `(n,)` int32: the program
+    rows: Array  # `(n_leaves, 20)` float64
+    grids: Array  # `(n_fields, 16)` float64
+    values: npt.NDArray[np.float32]  # float32: all fields' values
+    fields: tuple[Field, ...]  # each once
 
     @property
     def arrays(self) -> tuple[Any, ...]:

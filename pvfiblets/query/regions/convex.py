@@ -11,14 +11,10 @@ Array = npt.NDArray[np.float64]
 
 
 def box_distance(linear: Array, unit: Array) -> Array:
-    """Distances of positions from the box ``max |u_i| <= 1``.
-
-    Notes
-    -----
-    The nearest point lies in the box itself, within a face, an edge or a corner. For each of the 26 the nearest point
-    of its whole plane or line follows from least squares. Candidates outside of their face or edge are dropped; the
-    least distance is right, as each is the distance to a point of the box, and the true nearest point is among them.
-    """
+    """Distances of positions from the box ``max |u_i| <= 1``."""
+    # The nearest point lies in the box itself, within a face, an edge or a corner. For each of the 26 the nearest point
+    # of its whole plane or line follows from least squares. Candidates outside of their face or edge are dropped; the
+    # least distance is right, as each is the distance to a point of the box, and the true nearest point is among them.
     edges = np.linalg.inv(linear)  # mm per unit coordinate, columns
     lengths = np.linalg.norm(edges, axis=0)
     axes = edges / lengths
@@ -45,15 +41,11 @@ def box_distance(linear: Array, unit: Array) -> Array:
 
 
 def ellipsoid_distance(linear: Array, unit: Array) -> Array:
-    """Distances of positions from the ellipsoid ``u . u <= 1``.
-
-    Notes
-    -----
-    With semi-axes ``s_i`` and ``y`` in the ellipsoid's own frame the nearest point is ``x_i = s_i^2 y_i / (t + s_i^2)``
-    for the root ``t >= 0`` of ``sum (s_i y_i / (t + s_i^2))^2 = 1`` (Eberly 2013, "Distance from a point to an ellipse,
-    an ellipsoid, or a hyperellipsoid"), which falls with t, bracketed by ``max s_i |y_i| - s_i^2`` and ``|s y| - min
-    s_i^2``, and found by bisection to the last bit.
-    """
+    """Distances of positions from the ellipsoid ``u . u <= 1``."""
+    # With semi-axes `s_i` and `y` in the ellipsoid's own frame the nearest point is `x_i = s_i^2 y_i / (t + s_i^2)` for
+    # the root `t >= 0` of `sum (s_i y_i / (t + s_i^2))^2 = 1` (Eberly 2013, "Distance from a point to an ellipse, an
+    # ellipsoid, or a hyperellipsoid"), which falls with t, bracketed by `max s_i |y_i| - s_i^2` and `|s y| - min
+    # s_i^2`, and found by bisection to the last bit.
     # linear^-1 = turn diag(s) other, and a rotation of the unit ball is the unit ball.
     _, semi, other = np.linalg.svd(np.linalg.inv(linear))
     found = np.zeros(len(unit))

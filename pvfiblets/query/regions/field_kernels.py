@@ -9,10 +9,7 @@ import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
 
-__all__ = ["block_states", "look_up", "squared_distances"]
-
-_FAR = 1e37
-"""Squared mm where no voxel is: finite, so that differences are."""
+_FAR = 1e37  # squared mm where no voxel is: finite, so that differences are
 
 
 @kernel

@@ -29,37 +29,24 @@ __all__ = ["CELLS", "MOST_VALUES", "Field", "label_field", "rounded_towards_zero
 Array = npt.NDArray[np.float64]
 
 CELLS = 64
-MARGIN = 2
-"""Cells beyond a surface's bounds on each side."""
+MARGIN = 2  # cells beyond a surface's bounds on each side
 
-MOST_VALUES = 256**3
-"""64 MiB of float32."""
+MOST_VALUES = 256**3  # 64 MiB of float32
 
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """Signed lower bounds of distances on a grid.
+    """Signed lower bounds of distances on a grid."""
 
-    Parameters
-    ----------
-    values : numpy.ndarray
-        ``(nz, ny, nx)`` float32 mm of the shape itself, that is before it was moved; positive inside.
-    origin : numpy.ndarray
-        ``(3,)`` float64: grid point 0, 0, 0 in the shape's own unit coordinates (:attr:`.Shape.matrix`).
-    spacing : numpy.ndarray
-        ``(3,)`` float64: from grid point to grid point, in the same.
-    steps : numpy.ndarray
-        ``(3,)`` float64: the same in mm. A surface's unit coordinates are its mm, so that both are equal; a label
-        volume's count voxels.
-    whole : bool
-        Whether the nearest grid point's sign alone says where a position is, which it does in a label volume that was
-        not reduced to blocks.
-    """
-
+    # `(nz, ny, nx)` float32 mm of the shape itself, that is before it was moved; positive inside
     values: npt.NDArray[np.float32]
-    origin: Array
-    spacing: Array
+    origin: Array  # `(3,)` float64: grid point 0, 0, 0 in the shape's own unit coordinates (`.Shape.matrix`)
+    spacing: Array  # `(3,)` float64: from grid point to grid point, in the same
+    # `(3,)` float64: the same in mm. A surface's unit coordinates are its mm, so that both are equal; a label volume's
+    # count voxels.
     steps: Array
+    # whether the nearest grid point's sign alone says where a position is, which it does in a label volume that was not
+    # reduced to blocks
     whole: bool
 
     def __post_init__(self) -> None:

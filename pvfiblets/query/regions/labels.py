@@ -25,20 +25,12 @@ Flags = npt.NDArray[np.bool_]
 
 
 class Volume:
-    """Chosen voxels, and data derived from them at first use.
-
-    Parameters
-    ----------
-    mask : numpy.ndarray
-        ``(i, j, k)`` bool.
-    to_mm : numpy.ndarray
-        ``(4, 4)`` voxel to mm.
-    """
+    """Chosen voxels, and data derived from them at first use."""
 
     def __init__(self, mask: Flags, to_mm: Array) -> None:
-        self.mask = mask
+        self.mask = mask  # `(i, j, k)` bool
         self.mask.flags.writeable = False
-        self.to_mm = to_mm
+        self.to_mm = to_mm  # `(4, 4)` voxel to mm
         chosen = [np.nonzero(mask.any(axis=tuple({0, 1, 2} - {axis})))[0] for axis in range(3)]
         self.low = np.array([float(n[0]) for n in chosen])
         self.high = np.array([float(n[-1]) for n in chosen])

@@ -31,8 +31,7 @@ AND, OR, NOT = -1, -2, -3
 MAX_LEAVES = 32
 """On the GPU a uniform block holds the leaves: 32 of up to 256 bytes are half of the 16 KiB that OpenGL promises."""
 MAX_OPS = 64
-MAX_STACK = 6
-"""64 words push at most 32 leaves; a stack of depth d needs at least 2^(d-1) of them."""
+MAX_STACK = 6  # 64 words push at most 32 leaves; a stack of depth d needs at least 2^(d-1) of them
 
 
 class Region:

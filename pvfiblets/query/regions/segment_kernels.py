@@ -13,8 +13,6 @@ from ..density.voxel_walk_kernels import walk
 from .shape_kernels import unit
 from .surface_kernels import segment_crossings, winding_number
 
-__all__ = ["combine", "label_spans", "surface_spans"]
-
 _PLANE, _SLAB, _BOX, _SPHERE, _SURFACE, _LABELS = range(6)
 _AND, _NOT = -1, -3
 _BLOCK = 256
@@ -150,10 +148,9 @@ def combine(
 @kernel
 def _held(rows: Any, places: Any, first: Any, spans: Any, lows: Any, highs: Any, at: Any, k: int, begin: float,
           end: float) -> int:  # fmt: skip
-    """Bits of the leaves that hold some place from ``begin`` to ``end``, which rise from call to call.
-
-    A place on the face between two voxels is in the one that comes later: no place is in both, and none is in neither.
-    """
+    """Bits of the leaves that hold some place from ``begin`` to ``end``, which rise from call to call."""
+    # A place on the face between two voxels is in the one that comes later: no place is in both, and none is in
+    # neither.
     held = 0
     for leaf in range(len(rows)):
         place = places[leaf]
@@ -186,11 +183,9 @@ def _put(spans: Any, n: int, open_: bool, writes: bool, begin: float, end: float
 def label_spans(
     mask: Any, linear: Any, centre: Any, a: Any, b: Any, first: Any, spans: Any, writes: bool
 ) -> None:  # fmt: skip
-    """Shares of segments that lie in chosen voxels of ``mask`` (i, j, k), by `voxel_walk_kernels.walk`.
-
-    Unless ``writes``, only counted: ``first[k + 1]`` is the number of segment k. Otherwise written to ``spans`` from
-    ``first[k]`` on.
-    """
+    """Shares of segments that lie in chosen voxels of ``mask`` (i, j, k), by `voxel_walk_kernels.walk`."""
+    # Unless `writes`, only counted: `first[k + 1]` is the number of segment k. Otherwise written to `spans` from
+    # `first[k]` on.
     shape = mask.shape
     flat = mask.reshape(-1)
     most, strides = shape[0] + shape[1] + shape[2] + 4, (shape[1] * shape[2], shape[2], 1)
@@ -218,10 +213,8 @@ def label_spans(
 @parallel_kernel
 def surface_spans(mesh: Any, tree: Any, linear: Any, centre: Any, a: Any, b: Any, first: Any, spans: Any,
                   writes: bool) -> None:  # fmt: skip
-    """Shares of segments that a closed mesh encloses; ``first``, ``spans`` and ``writes`` as in :func:`label_spans`.
-
-    Between two triangles that it meets, a segment is where its middle is.
-    """
+    """Shares of segments that a closed mesh encloses; ``first``, ``spans`` and ``writes`` as in :func:`label_spans`."""
+    # Between two triangles that it meets, a segment is where its middle is.
     points, triangles, cells, members, low, high, steps, nx, ny = mesh
     boxes, links, order = tree
     for block in numba.prange((len(a) + _BLOCK - 1) // _BLOCK):

@@ -25,8 +25,6 @@ from .classify import pack_rows
 if TYPE_CHECKING:
     from .region import Region
 
-__all__ = ["TOGETHER", "counted_spans", "segment_flags"]
-
 TOGETHER = 1e-9
 
 

@@ -9,8 +9,6 @@ import numba
 
 from ...codec.jit import kernel, parallel_kernel
 
-__all__ = ["evaluate", "unit"]
-
 _PLANE, _SLAB, _BOX, _SPHERE = range(4)
 _AND, _OR, _NOT = -1, -2, -3
 _BLOCK = 4096
@@ -44,11 +42,9 @@ def _holds(row: Any, x: float, y: float, z: float) -> bool:
 
 @parallel_kernel
 def evaluate(ops: Any, rows: Any, known: Any, places: Any, points: Any, out: Any) -> None:
-    """Find the points that a region holds.
-
-    ``known`` is (k, n) bool: known results of leaves, of leaf i in row ``places[i]`` if that is not -1
-    (surfaces, labels); the other leaves are computed here. ``points`` is (n, 3) float64, ``out`` (n,) bool.
-    """
+    """Find the points that a region holds."""
+    # `known` is (k, n) bool: known results of leaves, of leaf i in row `places[i]` if that is not -1 (surfaces,
+    # labels); the other leaves are computed here. `points` is (n, 3) float64, `out` (n,) bool.
     n = len(points)
     for block in numba.prange((n + _BLOCK - 1) // _BLOCK):
         for i in range(block * _BLOCK, min((block + 1) * _BLOCK, n)):

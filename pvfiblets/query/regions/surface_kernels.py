@@ -130,11 +130,9 @@ def winding(points: Any, triangles: Any, first: Any, members: Any, low: Any, hig
 
 @kernel
 def build_tree(points: Any, triangles: Any) -> Any:
-    """Return boxes (m, 6) float64, links (m, 2) int64 and the order of the triangles (n,) int64.
-
-    A box's links are its two children, or, where the first is negative, ``-1 - first`` and the end of its triangles in
-    the order.
-    """
+    """Return boxes (m, 6) float64, links (m, 2) int64 and the order of the triangles (n,) int64."""
+    # A box's links are its two children, or, where the first is negative, `-1 - first` and the end of its triangles in
+    # the order.
     n = len(triangles)
     middles = np.empty((n, 3))
     for t in range(n):
@@ -258,10 +256,8 @@ def _edge_square(px: float, py: float, pz: float, ex: float, ey: float, ez: floa
 
 @kernel
 def triangle_square(points: Any, a: int, b: int, c: int, x: float, y: float, z: float) -> float:
-    """Squared distance from a triangle: from its edges or, where the foot of the perpendicular is inside, its plane.
-
-    Degenerate ones have no foot inside (the comparisons are strict) and are their edges.
-    """
+    """Squared distance from a triangle: from its edges or, where the foot of the perpendicular is inside, its plane."""
+    # Degenerate ones have no foot inside (the comparisons are strict) and are their edges.
     ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
     vx, vy, vz = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1], points[c, 2] - points[a, 2]
     px, py, pz = x - points[a, 0], y - points[a, 1], z - points[a, 2]
@@ -280,10 +276,8 @@ def triangle_square(points: Any, a: int, b: int, c: int, x: float, y: float, z: 
 @kernel
 def nearest(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, guess: int, share: float, stack: Any,
             reach: Any, x: float, y: float, z: float) -> Any:  # fmt: skip
-    """Squared distance and nearest triangle; ``guess`` is looked at first. ``stack``, ``reach``: (64,) for scratch.
-
-    With a ``share`` below 1 no triangle is nearer than that share of the square that is found.
-    """
+    """Squared distance and nearest triangle; ``guess`` is looked at first. ``stack``, ``reach``: (64,) for scratch."""
+    # With a `share` below 1 no triangle is nearer than that share of the square that is found.
     found = guess
     best = triangle_square(points, triangles[guess, 0], triangles[guess, 1], triangles[guess, 2], x, y, z)
     stack[0], reach[0] = 0, _box_square(boxes, 0, x, y, z)
@@ -330,10 +324,8 @@ def distances(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, p
 def nodes_of_grid(points: Any, triangles: Any, first: Any, members: Any, low: Any, high: Any, steps: Any, nx: int,
                   ny: int, boxes: Any, links: Any, order: Any, share: float, origin: Any, step: float,
                   out: Any) -> None:  # fmt: skip
-    """Signed distances at grid points into ``out`` (nz, ny, nx) float64: positive where the winding number is not 0.
-
-    They are lower bounds, of at least the root of ``share`` of the distance.
-    """
+    """Signed distances at grid points into ``out`` (nz, ny, nx) float64: positive where the winding number is not 0."""
+    # They are lower bounds, of at least the root of `share` of the distance.
     size_z, size_y, size_x = out.shape
     for row in numba.prange(size_z * size_y):
         stack, reach = np.empty(_DEEPEST, np.int64), np.empty(_DEEPEST)

@@ -29,19 +29,11 @@ _SIMILAR = 1e-12
 
 
 class Mesh:
-    """Triangles, and what finds them fast; made when first asked for.
-
-    Parameters
-    ----------
-    points : numpy.ndarray
-        ``(n, 3)`` float64 mm, finite.
-    triangles : numpy.ndarray
-        ``(m, 3)`` int64, at least one.
-    """
+    """Triangles, and what finds them fast; made when first asked for."""
 
     def __init__(self, points: Array, triangles: Corners) -> None:
-        self.points = points
-        self.triangles = triangles
+        self.points = points  # `(n, 3)` float64 mm, finite
+        self.triangles = triangles  # `(m, 3)` int64, at least one
         self.points.flags.writeable = self.triangles.flags.writeable = False
         used = points[np.unique(triangles)]
         self.low: Array = used.min(axis=0)

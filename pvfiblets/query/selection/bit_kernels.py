@@ -10,15 +10,11 @@ import numpy as np
 
 from ...codec.jit import parallel_kernel
 
-__all__ = ["keep_codes", "keep_values"]
-
 
 @parallel_kernel
 def keep_values(values: Any, lo: float, hi: float, keep_nan: bool, words: Any) -> None:
-    """Clear the bits of points whose value is not within ``lo`` to ``hi``.
-
-    ``values`` is ``(n,)`` float32, ``words`` ``((n + 31) // 32,)`` uint32, changed in place.
-    """
+    """Clear the bits of points whose value is not within ``lo`` to ``hi``."""
+    # `values` is `(n,)` float32, `words` `((n + 31) // 32,)` uint32, changed in place.
     for w in numba.prange(len(words)):
         word = np.uint32(0)
         for i in range(32 * w, min(32 * w + 32, len(values))):
@@ -30,10 +26,8 @@ def keep_values(values: Any, lo: float, hi: float, keep_nan: bool, words: Any) -
 
 @parallel_kernel
 def keep_codes(codes: Any, kept: Any, words: Any) -> None:
-    """Clear the bits of points whose code is not kept.
-
-    ``codes`` is ``(n,)`` uint8 or uint16, ``kept`` ``(256 or 65536,)`` bool, ``words`` as in :func:`keep_values`.
-    """
+    """Clear the bits of points whose code is not kept."""
+    # `codes` is `(n,)` uint8 or uint16, `kept` `(256 or 65536,)` bool, `words` as in `keep_values`.
     for w in numba.prange(len(words)):
         word = np.uint32(0)
         for i in range(32 * w, min(32 * w + 32, len(codes))):

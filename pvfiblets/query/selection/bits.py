@@ -29,27 +29,12 @@ SLICE = 1 << 22  # points of a mapped array that are looked at together
 
 @dataclass(frozen=True, eq=False)
 class Criterion:
-    """The kept values: from ``lo`` to ``hi``, both included.
+    """The kept values: from ``lo`` to ``hi``, both included."""
 
-    Attributes
-    ----------
-    values : Values, PointValues or array_like
-        Per point in coded order, or per streamline.
-    lo, hi : float
-        Infinite ends are no ends.
-    keep_nan : bool
-        Whether streamlines without a value are kept.
-
-    Raises
-    ------
-    ValueError
-        If an end is NaN, or ``lo`` is above ``hi``.
-    """
-
-    values: Values | PointValues | npt.ArrayLike
-    lo: float
+    values: Values | PointValues | npt.ArrayLike  # per point in coded order, or per streamline
+    lo: float  # infinite ends are no ends
     hi: float
-    keep_nan: bool = False
+    keep_nan: bool = False  # whether streamlines without a value are kept
 
     def __post_init__(self) -> None:
         if math.isnan(self.lo) or math.isnan(self.hi) or self.lo > self.hi:
@@ -64,12 +49,8 @@ def as_criterion(given: Criterion | tuple[Any, ...]) -> Criterion:
 
 
 def point_words(fiblets: FibletSet | Streamlines, criteria: Iterable[Criterion | tuple[Any, ...]]) -> Words:
-    """One bit for each point, set where every criterion holds.
-
-    Notes
-    -----
-    Values are compared as float64; coded values by the meaning of their code, without decoding.
-    """
+    """One bit for each point, set where every criterion holds."""
+    # Values are compared as float64; coded values by the meaning of their code, without decoding.
     from .bit_kernels import keep_codes, keep_values
 
     n = fiblets.n_points

@@ -48,24 +48,12 @@ SEGMENTS = 1 << 16  # tested together
 
 @dataclass(frozen=True)
 class FibletBalls:
-    """Consecutive fiblets, and balls that hold them.
+    """Consecutive fiblets, and balls that hold them."""
 
-    Attributes
-    ----------
-    first : int
-        Number of the first of them.
-    anchors : numpy.ndarray
-        ``(n, 2)`` uint32, a copy.
-    ranks : numpy.ndarray
-        ``(n,)`` int64.
-    centres, radii : numpy.ndarray
-        ``(n, 3)`` and ``(n,)`` float64, mm.
-    """
-
-    first: int
-    anchors: npt.NDArray[np.uint32]
-    ranks: Ints
-    centres: Floats
+    first: int  # number of the first of them
+    anchors: npt.NDArray[np.uint32]  # `(n, 2)` uint32, a copy
+    ranks: Ints  # `(n,)` int64
+    centres: Floats  # `(n, 3)` and `(n,)` float64, mm
     radii: Floats
 
 

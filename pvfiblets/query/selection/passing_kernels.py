@@ -90,10 +90,8 @@ def settle(states: Any, anchors: Any, ranks: Any, wanted: Any, bits: int, flags:
 
 @parallel_kernel
 def reduce_fiblets(inside: Any, starts: Any, found: Any) -> None:
-    """Flags of each fiblet by itself, from its points' flags.
-
-    ``inside`` is ``(n_points,)`` bool, ``starts`` ``(n + 1,)`` int64, ``found`` ``(n,)`` uint8, filled.
-    """
+    """Flags of each fiblet by itself, from its points' flags."""
+    # `inside` is `(n_points,)` bool, `starts` `(n + 1,)` int64, `found` `(n,)` uint8, filled.
     for f in numba.prange(len(found)):
         some, every = False, True
         for i in range(starts[f], starts[f + 1]):
@@ -113,11 +111,9 @@ def reduce_fiblets(inside: Any, starts: Any, found: Any) -> None:
 
 @kernel
 def merge(found: Any, which: Any, anchors: Any, ranks: Any, flags: Any) -> None:
-    """Take in fiblets whose points were looked at.
-
-    ``found`` is ``(m,)`` uint8 of :func:`reduce_fiblets`, ``which`` ``(m,)`` their rows in ``anchors`` and ``ranks``;
-    the rest is as in :func:`settle`.
-    """
+    """Take in fiblets whose points were looked at."""
+    # `found` is `(m,)` uint8 of `reduce_fiblets`, `which` `(m,)` their rows in `anchors` and `ranks`; the rest is as in
+    # `settle`.
     for m in range(len(found)):
         f = which[m]
         kept = ANY
@@ -147,12 +143,9 @@ def _ball_side(points: Any, first: int, last: int, packed: Any) -> int:
 
 @parallel_kernel
 def run_sides(points: Any, starts: Any, packed: Any, sides: Any) -> None:
-    """Sides of runs of :data:`RUN` segments of fiblets, each by a ball about it: ``sides`` (n_points,) int8.
-
-    Fiblet f has the points ``starts[f]`` to ``starts[f + 1]``. The side of a run is given to the first points of its
-    segments, that of a fiblet's last run to its last point too. ``packed`` is the region
-    (`classify.Packed`).
-    """
+    """Sides of runs of :data:`RUN` segments of fiblets, each by a ball about it: ``sides`` (n_points,) int8."""
+    # Fiblet f has the points `starts[f]` to `starts[f + 1]`. The side of a run is given to the first points of its
+    # segments, that of a fiblet's last run to its last point too. `packed` is the region (`classify.Packed`).
     for f in numba.prange(len(starts) - 1):
         last = starts[f + 1] - 1
         for first in range(starts[f], last + 1, RUN):
@@ -165,10 +158,8 @@ def run_sides(points: Any, starts: Any, packed: Any, sides: Any) -> None:
 
 @parallel_kernel
 def open_segments(points: Any, starts: Any, sides: Any, asked: Any, packed: Any, open_: Any) -> None:
-    """Mark the segments of fiblets ``asked`` (n,) bool that balls leave undecided: ``open_`` (n_points,) bool.
-
-    The other arguments are as in :func:`run_sides`.
-    """
+    """Mark the segments of fiblets ``asked`` (n,) bool that balls leave undecided: ``open_`` (n_points,) bool."""
+    # The other arguments are as in `run_sides`.
     for f in numba.prange(len(asked)):
         last = starts[f + 1] - 1
         open_[last] = False
@@ -192,11 +183,9 @@ def _alike(mask: Any, ax: float, ay: float, az: float, bx: float, by: float, bz:
 
 @parallel_kernel
 def label_points(points: Any, starts: Any, mask: Any, linear: Any, centre: Any, inside: Any, open_: Any) -> None:
-    """Flag fiblets' points in chosen voxels, and mark the segments to test: both (n_points,) bool.
-
-    The voxels of ``mask`` (i, j, k) are the nearest to ``linear (points - centre)``. A segment needs no test if it
-    crosses one face of voxels at most, and so lies in the voxels of its ends, or if all voxels about it are alike.
-    """
+    """Flag fiblets' points in chosen voxels, and mark the segments to test: both (n_points,) bool."""
+    # The voxels of `mask` (i, j, k) are the nearest to `linear (points - centre)`. A segment needs no test if it
+    # crosses one face of voxels at most, and so lies in the voxels of its ends, or if all voxels about it are alike.
     ni, nj, nk = mask.shape
     # Read once: the compiler cannot exclude that the written arrays are these.
     cx, cy, cz = centre[0], centre[1], centre[2]

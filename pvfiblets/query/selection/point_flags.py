@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any, Literal, get_args
 
-__all__ = ["ALL", "ANY", "FIRST", "LAST", "Sampling", "check_sampling"]
-
 ANY, ALL, FIRST, LAST = 1, 2, 4, 8
 """Flags of a streamline for a region: some of it lies in it, all of it does, the first point does, the last does."""
 

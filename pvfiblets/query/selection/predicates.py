@@ -73,23 +73,12 @@ class Predicate:
 
 @dataclass(frozen=True)
 class Condition(Predicate):
-    """The relation of a streamline to one region.
-
-    Attributes
-    ----------
-    region : Region
-    needed : int
-        Flags of :mod:`.passing`.
-    every : bool
-        Whether all of these flags must be set, or any one.
-    sampling : {'lines', 'points'}
-        What of the streamline counts.
-    """
+    """The relation of a streamline to one region."""
 
     region: Region
-    needed: int
-    every: bool = False
-    sampling: Sampling = "lines"
+    needed: int  # flags of `.passing`
+    every: bool = False  # whether all of these flags must be set, or any one
+    sampling: Sampling = "lines"  # what of the streamline counts
 
     def conditions(self) -> Iterator[Condition]:  # noqa: D102 - Predicate's
         yield self
@@ -127,15 +116,9 @@ class _Not(Predicate):
 
 @dataclass(frozen=True, eq=False)
 class Listed(Predicate):
-    """Streamlines that are known already, to be joined with conditions.
+    """Streamlines that are known already, to be joined with conditions."""
 
-    Attributes
-    ----------
-    mask : numpy.ndarray
-        ``(n_streamlines,)`` bool.
-    """
-
-    mask: Mask
+    mask: Mask  # `(n_streamlines,)` bool
 
     def conditions(self) -> Iterator[Condition]:  # noqa: D102 - Predicate's
         return iter(())

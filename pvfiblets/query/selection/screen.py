@@ -37,22 +37,13 @@ SAMPLES = 17  # tested places on a segment
 
 @dataclass(frozen=True, eq=False)
 class Under:
-    """Streamlines under an area of the screen, the nearest first.
+    """Streamlines under an area of the screen, the nearest first."""
 
-    Attributes
-    ----------
-    ids : numpy.ndarray
-        ``(n,)`` int64, each once.
-    places : numpy.ndarray
-        ``(n,)`` float64: of each streamline's places under the area the one nearest to the viewer, as the index of
-        the point before plus the fraction of the segment.
-    depths : numpy.ndarray
-        ``(n,)`` float64: window depth there, 0 at the near plane and 1 at the far.
-    """
-
-    ids: Ints
+    ids: Ints  # `(n,)` int64, each once
+    # `(n,)` float64: of each streamline's places under the area the one nearest to the viewer, as the index of the
+    # point before plus the fraction of the segment
     places: Array
-    depths: Array
+    depths: Array  # `(n,)` float64: window depth there, 0 at the near plane and 1 at the far
 
 
 def checked_polygon(polygon: npt.ArrayLike) -> Array:

@@ -12,8 +12,6 @@ from ...codec.jit import kernel, parallel_kernel
 from ...codec.kernels.capsule_kernels import end_part
 from ...codec.layout import PAGE_BITS
 
-__all__ = ["candidates", "distances", "hits", "spans"]
-
 _RANK_MASK, _BEGIN, _END = (1 << 14) - 1, 30, 31
 
 
@@ -65,12 +63,10 @@ def distances(polygon: Any, points: Any) -> Any:
 
 @kernel
 def _touching(polygon: Any, tolerance: float, x0: float, y0: float, x1: float, y1: float) -> Any:
-    """Whether a segment comes within ``tolerance`` of a polygon's area, and the ends of the part that does.
-
-    Of two segments that do not cross, an end of one is nearest to the other: it suffices to look at crossings, at
-    the segment's ends, and at the polygon's corners. Between the first and the last of those places the segment may
-    leave a polygon that is not convex.
-    """
+    """Whether a segment comes within ``tolerance`` of a polygon's area, and the ends of the part that does."""
+    # Of two segments that do not cross, an end of one is nearest to the other: it suffices to look at crossings, at the
+    # segment's ends, and at the polygon's corners. Between the first and the last of those places the segment may leave
+    # a polygon that is not convex.
     first, last = np.inf, -np.inf
     if _distance(polygon, x0, y0) <= tolerance:
         first, last = 0.0, 0.0
@@ -233,10 +229,8 @@ def hits(
 
 @parallel_kernel
 def spans(points: Any, starts: Any, counts: Any, first_point: Any, screen: Any, words: Any, out: Any) -> None:
-    """The same for every segment: ``out (n, 2)``, the part of the segment from each point that lies under the area.
-
-    NaN where there is none; parameters as for :func:`hits`.
-    """
+    """The same for every segment: ``out (n, 2)``, the part of the segment from each point that lies under the area."""
+    # NaN where there is none; parameters as for `hits`.
     for m in numba.prange(len(starts)):
         _parts(points, starts[m], counts[m], first_point[m], screen, words, out)
 

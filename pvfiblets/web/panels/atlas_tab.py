@@ -11,6 +11,7 @@ from pvfiblets.plotting.slices.settings import MEANING
 from pvfiblets.query.bundles.colours import hex_colour
 from pvfiblets.slices.labels import LabelTable
 from pvfiblets.web.actions import Actions
+from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.elements import fold, html, v3
 from pvfiblets.web.panels.filter_regions import condition, flat
 from pvfiblets.web.session.document import LINES, free_name
@@ -182,8 +183,7 @@ class AtlasActions(Actions):
         app.slices.changed()
 
     def _show(self) -> None:
-        with self._app.state:
-            self.refresh()
+        super()._show()
         self._app.stream.request()
 
 
@@ -210,9 +210,9 @@ def build(app: Any) -> None:
     fold("Labels of {{ atlas.name }}", "atlas_open", v_if="atlas.images.length", data_action="atlas")
     with html.Div(v_if="atlas.images.length && atlas_open", id="atlas"):
         with html.Div(v_if="atlas.images.length > 1", classes="px-3 pt-1"):
-            v3.VSelect(
-                items=("atlas.images",), model_value=("atlas.image",), density="compact", variant="outlined",
-                hide_details=True, update_modelValue=(atlas.choose, "[$event]"), aria_label="Image of labels",
+            ui.select(
+                items=("atlas.images",), model_value=("atlas.image",), update_modelValue=(atlas.choose, "[$event]"),
+                aria_label="Image of labels",
             )  # fmt: skip
         with html.Div(classes="pv-pair px-3 pt-1"):
             html.Input(
@@ -227,8 +227,7 @@ def build(app: Any) -> None:
                     v3.VBtn(title, value=how, size="x-small", classes="text-none", data_atlas_how=how)
             with v3.VBtn(
                 icon=True, size="x-small", aria_label="Click labels in a slice", data_action="ask-in-slice",
-                variant=("tool === 'ask' ? 'flat' : 'text'",), color=("tool === 'ask' ? 'primary' : undefined",),
-                click="tool = tool === 'ask' ? 'rotate' : 'ask'",
+                click="tool = tool === 'ask' ? 'rotate' : 'ask'", **ui.pressed("tool === 'ask'", "text"),
             ):  # fmt: skip
                 v3.VIcon("mdi-cursor-default-click-outline", size=16)
                 v3.VTooltip("Click labels in a slice", activator="parent", location="bottom")
@@ -237,7 +236,7 @@ def build(app: Any) -> None:
                 "{{ atlas.rows.filter((r) => atlas.asked.includes(r.label)).map((r) => r.name).join(' – ') }}: "
                 "{{ atlas.counted }}", classes="pv-value", style="flex: 1",
             )  # fmt: skip
-            v3.VBtn("Clear", size="x-small", variant="tonal", classes="text-none", click=atlas.clear)
+            ui.button("Clear", click=atlas.clear)
         html.Div("Click one label for its streamlines, two for the streamlines between them.",
                  classes="pv-small px-3 pt-1", v_if="!atlas.asked.length")  # fmt: skip
         with html.Div(style="max-height: 34vh; overflow: auto", classes="px-2 pt-1", id="atlas-rows"):
@@ -252,9 +251,7 @@ def build(app: Any) -> None:
                 ):  # fmt: skip
                     html.Span(classes="pv-dot mr-2", style=("{ background: r.color }",))
                     html.Span("{{ r.name }}", classes="text-truncate")
-                with v3.VBtn(icon=True, size="x-small", variant="text", click=(atlas.go, "[r.label]"),
-                             aria_label="Go there"):  # fmt: skip
-                    v3.VIcon("mdi-crosshairs-gps", size=16)
+                ui.icon_button("mdi-crosshairs-gps", "Go there", 16, click=(atlas.go, "[r.label]"))
             html.Div(
                 f"{{{{ {FOUND}.length - {SHOWN} }}}} more; search for a name or a number", classes="pv-small px-2 py-1",
                 v_if=f"{FOUND}.length > {SHOWN}",

@@ -11,8 +11,9 @@ import numpy as np
 
 from pvfiblets.formats.registry import suffixes
 from pvfiblets.web.actions import LineActions
+from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.describe import typed
-from pvfiblets.web.panels.elements import fold, html, v3
+from pvfiblets.web.panels.elements import fold, html
 from pvfiblets.web.scene.loading import Watch
 from pvfiblets.web.session.document import Ids
 from pvfiblets.web.values import number
@@ -22,10 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["FindingActions", "build"]
 
-LISTED = 50
-"""Clusters that become bundles; the others are counted."""
-COMPARED = 1000
-"""Streamlines that all others are compared with; of more, an even share."""
+LISTED = 50  # clusters that become bundles; the others are counted
+COMPARED = 1000  # streamlines that all others are compared with; of more, an even share
 
 
 class FindingActions(LineActions):
@@ -48,8 +47,7 @@ class FindingActions(LineActions):
         self._open = is_open is True
         if self._open:
             self._folders = model_folders(self._app.confined)
-        with self._app.state:
-            self.refresh()
+        self._show()
 
     # More like this
 
@@ -181,26 +179,21 @@ def build(app: Any) -> None:
             ("clusters", "Clusters", "cluster_mm", finding.cluster, "Make",
              "Make bundles of streamlines within this distance of their mean line (QuickBundles)"),
         ):  # fmt: skip
-            with html.Div(classes="pv-row", data_find=name, title=hint):
-                html.Label(label)
-                with html.Div(classes="pv-pair"):
-                    html.Input(classes="pv-num", inputmode="decimal", style="width: 56px", v_model=(key,),
-                               aria_label=f"{label}: distance, mm")  # fmt: skip
-                    html.Span("mm", classes="pv-small", style="flex: 1")
-                    v3.VBtn(button, size="small", variant="tonal", classes="text-none", click=(act, f"[{key}]"),
-                            data_bundle=name)  # fmt: skip
-        with html.Div(
-            v_if="finding.dipy && finding.folders.length", classes="pv-row", data_find="models",
+            with ui.labelled(label, data_find=name, title=hint), html.Div(classes="pv-pair"):
+                ui.number_field(style="width: 56px", v_model=(key,), aria_label=f"{label}: distance, mm")
+                html.Span("mm", classes="pv-small", style="flex: 1")
+                ui.button(button, size="small", click=(act, f"[{key}]"), data_bundle=name)
+        with ui.labelled(
+            "Models", v_if="finding.dipy && finding.folders.length", data_find="models",
             title="Bundles that match a folder of models (RecoBundles, by dipy)",
         ):  # fmt: skip
-            html.Label("Models")
             with html.Div(classes="pv-pair"):
-                v3.VSelect(
-                    v_model=("models_folder",), items=("finding.folders",), density="compact", variant="outlined",
-                    hide_details=True, placeholder="folder", aria_label="Folder of models", data_select="models",
+                ui.select(
+                    v_model=("models_folder",), items=("finding.folders",), placeholder="folder",
+                    aria_label="Folder of models", data_select="models",
                 )  # fmt: skip
-                v3.VBtn("Recognise", size="small", variant="tonal", classes="text-none", data_bundle="recognise",
-                        click=(finding.recognise, "[models_folder]"), disabled=("!models_folder",))  # fmt: skip
+                ui.button("Recognise", size="small", data_bundle="recognise",
+                          click=(finding.recognise, "[models_folder]"), disabled=("!models_folder",))  # fmt: skip
         html.Div(
             "Bundles are recognised by a folder with a tractogram for each; there is none in the served folder.",
             v_if="finding.dipy && !finding.folders.length", classes="pv-small px-3 pt-1",

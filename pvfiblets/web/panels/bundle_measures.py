@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.web.actions import LineActions
+from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.charts import Band, profiles_chart, short
 from pvfiblets.web.panels.csv_tables import table_text
 from pvfiblets.web.panels.elements import fold, html, v3
@@ -23,12 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = ["FORMATS", "MeasureActions", "build"]
 
-FORMATS = ("csv", "tsv", "parquet")
-"""Of the tables that are fetched."""
-PROFILED = 24
-"""Bundles in one chart."""
-MEASURED = 2000
-"""Bundles in one table."""
+FORMATS = ("csv", "tsv", "parquet")  # of the tables that are fetched
+PROFILED = 24  # bundles in one chart
+MEASURED = 2000  # bundles in one table
 PLACES = 100
 SHOWN = 200  # rows of a table on the page
 KINDS = ("profile", "table")
@@ -98,14 +96,12 @@ class MeasureActions(LineActions):
     def fold(self, is_open: bool) -> None:
         """Open or close the section."""
         self._open = is_open is True
-        with self._app.state:
-            self.refresh()
+        self._show()
 
     def set_value(self, value: str) -> None:
         """Choose what profiles are of."""
         self._value = str(value)
-        with self._app.state:
-            self.refresh()
+        self._show()
 
     # What is done
 
@@ -171,8 +167,7 @@ class MeasureActions(LineActions):
         if found is None:
             return
         self._results[kind] = found
-        with self._app.state:
-            self.refresh()
+        self._show()
 
     def fetch(self, kind: str, suffix: str) -> str | bytes:
         """Return a table in full, for the browser to save."""
@@ -239,16 +234,13 @@ def build(app: Any) -> None:
          data_action="measure-bundles")  # fmt: skip
     with html.Div(v_if="measures.open", id="measures"):
         html.Div("Of the bundles chosen by boxes, or of all that are shown.", classes="pv-small px-3 pb-1")
-        with html.Div(classes="pv-row"):
-            html.Label("Profile of")
-            with html.Div(classes="pv-pair"):
-                v3.VSelect(
-                    items=("measures.values",), model_value=("measures.value",), density="compact", variant="outlined",
-                    hide_details=True, update_modelValue=(measuring.set_value, "[$event]"), aria_label="Profile of",
-                    data_select="profiled", style="min-width: 0",
-                )  # fmt: skip
-                v3.VBtn("Plot", size="small", variant="tonal", classes="text-none", click=measuring.profile,
-                        data_action="profile-bundles")  # fmt: skip
+        with ui.labelled("Profile of"), html.Div(classes="pv-pair"):
+            ui.select(
+                items=("measures.values",), model_value=("measures.value",),
+                update_modelValue=(measuring.set_value, "[$event]"), aria_label="Profile of",
+                data_select="profiled", style="min-width: 0",
+            )  # fmt: skip
+            ui.button("Plot", size="small", click=measuring.profile, data_action="profile-bundles")
         with html.Div(v_if="measures.profile.rows", id="bundle-profile"):
             html.Div(v_html=("measures.profile.chart",), classes="px-2 pt-1")
             with (
@@ -258,10 +250,9 @@ def build(app: Any) -> None:
                 html.Span(classes="pv-dot", style=("{ background: one.color }",))
                 html.Span("{{ one.name }} ({{ one.count }})", style="overflow-wrap: anywhere")
             _table("measures.profile", "profile")
-        with html.Div(classes="pv-row"):
-            html.Label("Statistics")
-            v3.VBtn("Table", size="small", variant="tonal", classes="text-none", click=measuring.statistics,
-                    data_action="table-bundles", style="justify-self: start")  # fmt: skip
+        with ui.labelled("Statistics"):
+            ui.button("Table", size="small", click=measuring.statistics, data_action="table-bundles",
+                      style="justify-self: start")  # fmt: skip
         with html.Div(v_if="measures.table.rows", id="bundle-table"):
             _table("measures.table", "table")
             html.Div("{{ measures.table.more }}", v_if="measures.table.more", classes="pv-small px-3")

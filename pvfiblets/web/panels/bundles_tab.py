@@ -8,17 +8,16 @@ import numpy as np
 
 from pvfiblets.web.actions import LineActions
 from pvfiblets.web.panels import bundle_finding, bundle_measures
+from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.elements import eye, html, v3
 from pvfiblets.web.panels.writing import EXPORTS
 from pvfiblets.web.session.document import LINES
 
 __all__ = ["BundleActions", "build"]
 
-LISTED = 300
-"""Rows of the list; more are counted, and found by their names."""
+LISTED = 300  # rows of the list; more are counted, and found by their names
 
-MANY = 20
-"""Bundles beyond which one looks for them by name."""
+MANY = 20  # bundles beyond which one looks for them by name
 
 
 class BundleActions(LineActions):
@@ -63,14 +62,12 @@ class BundleActions(LineActions):
         self._checked = [one for one in self._checked if one != name]
         if on is True and name in known:
             self._checked.append(name)
-        with self._app.state:
-            self.refresh()
+        self._show()
 
     def seek(self, text: str) -> None:
         """List the bundles with a text in their names only."""
         self._sought = str(text or "").casefold()
-        with self._app.state:
-            self.refresh()
+        self._show()
 
     def add(self, what: str) -> None:
         """Make a bundle of the selection or of the visible streamlines."""
@@ -170,10 +167,9 @@ def build(app: Any) -> None:
                 ("selected", "Selected", "Make a bundle of the selection"),
                 ("shown", "Shown", "Make a bundle of the visible streamlines"),
             ):
-                v3.VBtn(
-                    title, size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus", title=hint,
-                    click=(bundles.add, f"['{what}']"), data_bundle=what,
-                    disabled=("!bundles.selected",) if what == "selected" else False,
+                ui.button(
+                    title, size="small", prepend_icon="mdi-plus", title=hint, click=(bundles.add, f"['{what}']"),
+                    data_bundle=what, disabled=("!bundles.selected",) if what == "selected" else False,
                 )  # fmt: skip
         html.Div(
             "No bundles yet. Make one of the selection, or of the visible streamlines.",
@@ -184,11 +180,9 @@ def build(app: Any) -> None:
                 eye("bundles.all", "Hide all", "Show all", click=(bundles.show_all, "[!bundles.all]"),
                     data_action="all-bundles")  # fmt: skip
                 html.Span("{{ bundles.count }} bundles", classes="pv-small", style="flex: 1")
-                v3.VBtn(
-                    "Colour by bundle", size="x-small", classes="text-none", data_action="colour-by-bundle",
-                    variant=("bundles.coloured ? 'flat' : 'tonal'",),
-                    color=("bundles.coloured ? 'primary' : undefined",),
-                    click=(bundles.colour, "[!bundles.coloured]"),
+                ui.button(
+                    "Colour by bundle", data_action="colour-by-bundle", click=(bundles.colour, "[!bundles.coloured]"),
+                    **ui.pressed("bundles.coloured"),
                 )  # fmt: skip
             html.Input(
                 v_if=f"bundles.count > {MANY}", type="search", placeholder="Find by name", aria_label="Find bundles",
@@ -208,16 +202,14 @@ def build(app: Any) -> None:
                     ("subtract", "Subtract", "Remove the others' streamlines from the first chosen", 2),
                     ("remove", "Remove", "Remove from the list; streamlines stay", 1),
                 ):
-                    v3.VBtn(
-                        title, size="x-small", variant="tonal", classes="text-none", title=hint, data_bundle_act=what,
-                        click=(bundles.act, f"['{what}']"), disabled=(f"bundles.checked < {least}",),
+                    ui.button(
+                        title, title=hint, data_bundle_act=what, click=(bundles.act, f"['{what}']"),
+                        disabled=(f"bundles.checked < {least}",),
                     )  # fmt: skip
-                v3.VBtn("Export…", size="x-small", variant="tonal", classes="text-none", id="export-bundles",
-                        data_bundle_act="export")  # fmt: skip
+                ui.button("Export…", id="export-bundles", data_bundle_act="export")
                 for by, icon, hint in ((-1, "mdi-arrow-up", "Up the list"), (1, "mdi-arrow-down", "Down the list")):
-                    with v3.VBtn(icon=True, size="x-small", variant="tonal", aria_label=hint, title=hint,
-                                 click=(bundles.move, f"[{by}]"), data_bundle_move=by):  # fmt: skip
-                        v3.VIcon(icon, size=16)
+                    ui.icon_button(icon, hint, 16, variant="tonal", title=hint, click=(bundles.move, f"[{by}]"),
+                                   data_bundle_move=by)  # fmt: skip
                 with v3.VMenu(activator="#export-bundles"), v3.VList(density="compact"):
                     for suffix in EXPORTS:
                         v3.VListItem(title=suffix, click=(bundles.export, f"['{suffix}']"),

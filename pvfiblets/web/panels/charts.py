@@ -14,10 +14,8 @@ COLOURS = ("#4e9ad6", "#e8953a", "#58b368", "#d65a7c", "#9d7fd1", "#b8a13b", "#5
 
 
 def histogram_chart(counts: ArrayLike) -> str:
-    """Return bars of the square roots of counts, so that rare values are seen beside frequent ones.
-
-    A few bars that stand far above the others, such as that of the air around a head, are cut off.
-    """
+    """Return bars of the square roots of counts, so that rare values are seen beside frequent ones."""
+    # A few bars that stand far above the others, such as that of the air around a head, are cut off.
     heights = np.sqrt(np.maximum(np.nan_to_num(np.asarray(counts, np.float64)), 0.0))
     if not heights.size or heights.max() <= 0.0:
         return ""
@@ -34,19 +32,11 @@ def histogram_chart(counts: ArrayLike) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """A mean with its band along streamlines.
+    """A mean with its band along streamlines."""
 
-    Attributes
-    ----------
-    name, color : str
-        What it is of, and how it is drawn.
-    mean, low, high : numpy.ndarray, shape (n,)
-        Values; non-finite ones leave a gap.
-    """
-
-    name: str
+    name: str  # its subject, and its colour
     color: str
-    mean: np.ndarray
+    mean: np.ndarray  # (n,): values; non-finite ones leave a gap
     low: np.ndarray
     high: np.ndarray
 

@@ -10,8 +10,7 @@ import numpy as np
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.panels.controls import AXES, axis_of, controls, moved, typed_value
 
-EVERY = "*"
-"""Among the layers of a cut: all that are lines."""
+EVERY = "*"  # among the layers of a cut: all that are lines
 
 
 class CutActions(Actions):

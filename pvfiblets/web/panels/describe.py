@@ -67,16 +67,10 @@ def control(item: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class Charts:
-    """Histograms of a scene's values, kept: they are of the data, which does not change.
-
-    Parameters
-    ----------
-    scene : Scene
-        Whose layers they are of.
-    """
+    """Histograms of a scene's values, kept: they are of the data, which does not change."""
 
     def __init__(self, scene: Any) -> None:
-        self._scene = scene
+        self._scene = scene  # whose layers they are of
         self._kept: dict[tuple[Any, ...], tuple[str, list[float]]] = {}
 
     def chart_of(self, layer_id: str, name: str) -> tuple[str, list[float]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.elements import html, v3
 from pvfiblets.web.server.access import LARGEST_SESSION
 
@@ -170,24 +171,20 @@ def _sessions(app: Any) -> None:
 
 def _picture(app: Any) -> None:
     with _dialog("picture", "Save the picture", 420), v3.VCardText(classes="px-1 pt-0"):
-        with html.Div(classes="pv-row"):
-            html.Label("Times the view")
+        with ui.labelled("Times the view"):
             with html.Div(classes="pv-pair", style="flex-wrap: wrap"):
                 for times in (1, 2, 3, 4):
                     v3.VBtn(f"{times}", size="x-small", variant="tonal", click=(app.camera.ask_picture, f"[{times}]"),
                             aria_label=f"{times} times as large as the view", data_times=times)  # fmt: skip
         for label, name, unit in (("Width", "width", "pixels"), ("Height", "height", "pixels")):
-            with html.Div(classes="pv-row"):
-                html.Label(label)
+            with ui.labelled(label):
                 with html.Div(classes="pv-pair"):
                     html.Input(classes="pv-num", inputmode="numeric", value=(f"picture.{name}",), aria_label=label,
                                id=f"picture-{name}", data_read_later=True)  # fmt: skip
                     html.Span(unit, classes="pv-small")
-        with html.Div(classes="pv-row"):
-            html.Label("For print")
+        with ui.labelled("For print"):
             with html.Div(classes="pv-pair"):
-                html.Input(classes="pv-num", inputmode="decimal", value="300", aria_label="Pixels per inch",
-                           id="picture-dpi", data_read_later=True)  # fmt: skip
+                ui.number_field(value="300", aria_label="Pixels per inch", id="picture-dpi", data_read_later=True)
                 html.Span("dpi", classes="pv-small")
         with html.Label(classes="pv-row", style="cursor: pointer"):
             html.Span("Background", classes="pv-label")
@@ -245,8 +242,7 @@ def _progress(app: Any) -> None:
                 html.Span(
                     "{{ job.text }}", style="flex: 1; font-size: 13px", classes="text-truncate", title=("job.text",)
                 )
-                v3.VBtn("Cancel", v_if="job.cancellable", size="x-small", variant="tonal", classes="text-none",
-                        click=app.files.cancel, data_action="cancel")  # fmt: skip
+                ui.button("Cancel", v_if="job.cancellable", click=app.files.cancel, data_action="cancel")
             v3.VProgressLinear(model_value=("job.share",), indeterminate=("job.share < 0",), color="primary")
             html.Div(
                 "{{ job.then }}", v_if="job.then", style="font-size: 12px; opacity: .7", classes="text-truncate mt-2",
@@ -263,5 +259,5 @@ def _progress(app: Any) -> None:
                     classes="text-truncate",
                     title=("uploading",),
                 )
-                v3.VBtn("Cancel", size="x-small", variant="tonal", classes="text-none", data_action="cancel-upload")
+                ui.button("Cancel", data_action="cancel-upload")
             v3.VProgressLinear(model_value=("uploaded",), indeterminate=("uploaded < 0",), color="primary")

@@ -5,15 +5,14 @@ trame leaves out attributes that it does not know of an element, without a word;
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from html import escape
 from types import ModuleType
 from typing import Any
 
 from trame.widgets import html as _html
 from trame.widgets import vuetify3 as _vuetify
-
-__all__ = ["eye", "html", "v3"]
 
 PASSED_ON = ("data_", "aria_")
 PLAIN = frozenset(
@@ -22,16 +21,10 @@ PLAIN = frozenset(
 
 
 class Elements:
-    """The elements of a module of trame's.
-
-    Parameters
-    ----------
-    module : module
-        Such as ``trame.widgets.html``.
-    """
+    """The elements of a module of trame's."""
 
     def __init__(self, module: ModuleType) -> None:
-        self._module = module
+        self._module = module  # such as `trame.widgets.html`
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
         kind = getattr(self._module, name)
@@ -60,6 +53,50 @@ def written(name: str, value: Any) -> str:
 
 html = Elements(_html)
 v3 = Elements(_vuetify)
+
+
+def button(text: str, **attributes: Any) -> Any:
+    """Build a small button."""
+    return v3.VBtn(text, **{"size": "x-small", "variant": "tonal", "classes": "text-none", **attributes})
+
+
+def icon_button(icon: str, label: str | tuple[str], size: int = 18, **attributes: Any) -> None:
+    """Build a small button with an icon alone; the label is for screen readers."""
+    with v3.VBtn(icon=True, aria_label=label, **{"size": "x-small", "variant": "text", **attributes}):
+        v3.VIcon(icon, size=size)
+
+
+def pressed(condition: str, otherwise: str = "tonal") -> dict[str, Any]:
+    """Return the attributes of a button that shows whether a condition holds."""
+    return {"variant": (f"{condition} ? 'flat' : '{otherwise}'",), "color": (f"{condition} ? 'primary' : undefined",)}
+
+
+@contextmanager
+def labelled(label: str, hint: str | tuple[str] | None = None, **attributes: Any) -> Iterator[None]:
+    """Build a row of a panel: its label, and what the block builds."""
+    with html.Div(classes="pv-row", **attributes):
+        html.Label(label, **({} if hint is None else {"title": hint}))
+        yield
+
+
+def number_field(**attributes: Any) -> None:
+    """Build a field for a number."""
+    html.Input(classes="pv-num", inputmode="decimal", **attributes)
+
+
+def slider(kind: str = "VSlider", **attributes: Any) -> None:
+    """Build a slider, or by ``VRangeSlider`` one with two ends."""
+    getattr(v3, kind)(density="compact", hide_details=True, color="primary", thumb_size=14, track_size=3, **attributes)
+
+
+def select(**attributes: Any) -> None:
+    """Build a list to choose from."""
+    v3.VSelect(density="compact", variant="outlined", hide_details=True, **attributes)
+
+
+def switch(**attributes: Any) -> None:
+    """Build a switch."""
+    v3.VSwitch(density="compact", hide_details=True, color="primary", **attributes)
 
 
 def fold(title: str, is_open: str, **attributes: Any) -> None:

@@ -32,10 +32,8 @@ __all__ = ["ExportActions"]
 
 PLACES = ("folder", "computer")
 KEPT = 4  # downloadable files; older ones are dropped, temporary ones removed
-LARGEST = 2048 * MEBIBYTE
-"""Largest size of a temporary file for download, bytes."""
-BYTES_PER_POINT = 12
-"""At least, in all formats but ``.fiblets``."""
+LARGEST = 2048 * MEBIBYTE  # largest size of a temporary file for download, bytes
+BYTES_PER_POINT = 12  # at least, in all formats but `.fiblets`
 
 
 @dataclass(frozen=True)

@@ -14,19 +14,11 @@ from pvfiblets.web.session.document import LINES, Layer, Source, volume_in
 
 
 class FilterActions(LineActions):
-    """The filters of the chosen layer of an application's scene.
-
-    Parameters
-    ----------
-    app : Explorer
-        Whose scene and page these act on.
-    charts : Charts
-        Of the scene's values.
-    """
+    """The filters of the chosen layer of an application's scene."""
 
     def __init__(self, app: Any, charts: Charts) -> None:
         super().__init__(app)
-        self._charts = charts
+        self._charts = charts  # of the scene's values
 
     # What is shown
 

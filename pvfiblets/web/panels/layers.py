@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.elements import eye, fold, html, v3
 
 EXPERT = "Drawing"
@@ -88,8 +89,7 @@ def properties(app: Any) -> None:
                 v_for="p in group.properties", key="p.name", data_property=("p.name",),
                 v_show=f"group.title !== '{EXPERT}' || expert_open",
             ):  # fmt: skip
-                with html.Div(classes="pv-row", v_if="p.matters"):
-                    html.Label("{{ p.label }}", title=("p.help",))
+                with ui.labelled("{{ p.label }}", ("p.help",), v_if="p.matters"):
                     with html.Div(classes="pv-pair"):
                         _controls(app)
 
@@ -114,22 +114,16 @@ def _controls(app: Any) -> None:
     }
     held = "held.at === 'property ' + chosen + ' ' + p.name"
     html.Span("{{ p.shown }}", v_if="p.read_only", classes="pv-value")
-    v3.VSelect(
+    ui.select(
         v_else_if="p.type === 'choice'",
         items=("p.items",),
         model_value=("p.index",),
         update_modelValue=(app.set_choice, "[chosen, p.name, $event]"),
-        density="compact",
-        variant="outlined",
-        hide_details=True,
     )
-    v3.VSwitch(
+    ui.switch(
         v_else_if="p.type === 'bool'",
         model_value=("p.value",),
         update_modelValue=change("!!$event"),
-        density="compact",
-        hide_details=True,
-        color="primary",
         aria_label=("p.label",),
     )
     with v3.Template(v_else_if="p.type === 'colour'"):
@@ -146,9 +140,7 @@ def _controls(app: Any) -> None:
             v_if="p.limits && !p.wide",
             **slider,
         )
-        html.Input(
-            classes="pv-num",
-            inputmode="decimal",
+        ui.number_field(
             value=(f"{held} ? held.shown[0] : p.shown",),
             placeholder=("p.optional ? 'auto' : ''",),
             change=(app.set_number, "[chosen, p.name, $event.target.value]"),
@@ -164,9 +156,7 @@ def _controls(app: Any) -> None:
             )
             with html.Div(classes="pv-pair", style="justify-content: space-between"):
                 for end in (0, 1):
-                    html.Input(
-                        classes="pv-num",
-                        inputmode="decimal",
+                    ui.number_field(
                         value=(f"({held} ? held.shown : p.ends)[{end}]",),
                         change=(app.set_end, f"[chosen, p.name, {end}, $event.target.value]"),
                         aria_label=(f"p.label + ({end} ? ', high end' : ', low end')",),
@@ -187,9 +177,8 @@ def _controls(app: Any) -> None:
         change=(app.set_text, "[chosen, p.name, $event.target.value]"),
         aria_label=("p.label",),
     )
-    with v3.VBtn(
-        v_if="p.optional && p.value !== null && !p.read_only && p.type !== 'choice'",
-        icon=True, size="x-small", variant="text", aria_label=("'Reset ' + p.label",), click=change("null"),
+    ui.icon_button(
+        "mdi-backup-restore", ("'Reset ' + p.label",), 16,
+        v_if="p.optional && p.value !== null && !p.read_only && p.type !== 'choice'", click=change("null"),
         title="Back to automatic",
-    ):  # fmt: skip
-        v3.VIcon("mdi-backup-restore", size=16)
+    )  # fmt: skip

@@ -14,6 +14,7 @@ import numpy as np
 from pvfiblets.images.files import SUFFIXES as VOLUMES
 from pvfiblets.query.connectome.matrix import STATISTICS, SUFFIXES
 from pvfiblets.web.actions import LineActions
+from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.charts import short
 from pvfiblets.web.panels.describe import typed
 from pvfiblets.web.panels.elements import html, v3
@@ -28,10 +29,8 @@ if TYPE_CHECKING:
 
 __all__ = ["MatrixActions", "build", "matrix_image"]
 
-KEPT = 4
-"""Matrices that undo finds without work."""
-LISTED = 200
-"""Files that may be labels, or their names."""
+KEPT = 4  # matrices that undo finds without work
+LISTED = 200  # files that may be labels, or their names
 COLOURS = "inferno"
 
 
@@ -267,10 +266,6 @@ class MatrixActions(LineActions):
             safe.save(path)
             return path.read_bytes() if suffix == ".npy" else path.read_text(encoding="utf-8")
 
-    def _show(self) -> None:
-        with self._app.state:
-            self.refresh()
-
 
 def _cell(found: Connectome, row: Any, column: Any) -> tuple[int, int]:
     n = len(found.labels)
@@ -314,13 +309,10 @@ def build(app: Any) -> None:
     with html.Div(v_if="matrix.open", classes="pv-matrix", id="pv-matrix"):
         with html.Div(classes="pv-pair px-3 pt-1"):
             html.Span("Matrix", classes="pv-name pa-0", style="flex: 1")
-            v3.VBtn("Settings", v_if="matrix.n", size="x-small", variant="text", classes="text-none",
-                    click=matrix.change, data_action="matrix-settings")  # fmt: skip
-            v3.VBtn("Remove", v_if="matrix.n", size="x-small", variant="text", classes="text-none",
-                    click=matrix.close, data_action="remove-matrix", title="Take the matrix away")  # fmt: skip
-            with v3.VBtn(icon=True, size="x-small", variant="text", aria_label="Fold away", data_action="fold-matrix",
-                         click=(matrix.open, "[false]")):  # fmt: skip
-                v3.VIcon("mdi-close", size=18)
+            ui.button("Settings", v_if="matrix.n", variant="text", click=matrix.change, data_action="matrix-settings")
+            ui.button("Remove", v_if="matrix.n", variant="text", click=matrix.close, data_action="remove-matrix",
+                      title="Take the matrix away")  # fmt: skip
+            ui.icon_button("mdi-close", "Fold away", data_action="fold-matrix", click=(matrix.open, "[false]"))
         with html.Div(v_if="matrix.settings", id="matrix-settings"):
             _settings(matrix)
         with html.Div(v_if="matrix.n", classes="px-3"):
@@ -337,16 +329,15 @@ def build(app: Any) -> None:
                      style="min-height: 3em", v_pre=True)  # fmt: skip
             with html.Div(v_if="matrix.cell", classes="pv-pair pb-1"):
                 html.Span("Shown: {{ matrix.cell }}", classes="pv-value", style="flex: 1", data_value="connection")
-                v3.VBtn("Show all", size="x-small", variant="tonal", classes="text-none", click=matrix.disconnect,
-                        data_action="show-all-connections")  # fmt: skip
+                ui.button("Show all", click=matrix.disconnect, data_action="show-all-connections")
             with html.Div(classes="pv-pair pv-small"):
                 html.Span("{{ matrix.low }}")
                 html.Div(style="flex: 1; height: 10px; border-radius: 2px; background: linear-gradient(90deg, "
                          "#140b34, #550f6d, #981d69, #d24644, #f8870e, #fcffa4)")  # fmt: skip
                 html.Span("{{ matrix.high }}")
-                v3.VBtn(
-                    "log", size="x-small", classes="text-none", variant=("matrix.log ? 'flat' : 'tonal'",),
-                    click=(matrix.set_scale, "[!matrix.log]"), title="Colours by logarithms", data_action="matrix-log",
+                ui.button(
+                    "log", variant=("matrix.log ? 'flat' : 'tonal'",), click=(matrix.set_scale, "[!matrix.log]"),
+                    title="Colours by logarithms", data_action="matrix-log",
                 )  # fmt: skip
             with html.Div(classes="py-2", style="display: flex; gap: 4px"):
                 for suffix in SUFFIXES:
@@ -369,19 +360,18 @@ def _settings(matrix: MatrixActions) -> None:
                                          *({"title": one, "value": one} for one in STATISTICS)]),
          "Of a pair's numbers: the sum of counts, else the mean"),
     ):  # fmt: skip
-        with html.Div(classes="pv-row", title=hint):
-            html.Label(label)
-            v3.VSelect(
-                items=(items,), model_value=(f"matrix.form.chosen.{name}",), density="compact", variant="outlined",
-                hide_details=True, aria_label=label, update_modelValue=(matrix.set, f"['{name}', $event]"),
-                data_select=f"matrix-{name}", style="min-width: 0",
+        with ui.labelled(label, title=hint):
+            ui.select(
+                items=(items,), model_value=(f"matrix.form.chosen.{name}",), aria_label=label,
+                update_modelValue=(matrix.set, f"['{name}', $event]"), data_select=f"matrix-{name}",
+                style="min-width: 0",
             )  # fmt: skip
-    with html.Div(classes="pv-row", title="About an end, in which its parcel is looked for; 0: the voxel it lies in"):
-        html.Label("Radius")
+    with ui.labelled("Radius", title="About an end, in which its parcel is looked for; 0: the voxel it lies in"):
         with html.Div(classes="pv-pair"):
-            html.Input(
-                classes="pv-num", inputmode="decimal", value=("matrix.form.chosen.radius",), aria_label="Radius, mm",
-                change=(matrix.set, "['radius', $event.target.value]"), data_field="matrix-radius", style="width: 56px",
+            ui.number_field(
+                value=("matrix.form.chosen.radius",), aria_label="Radius, mm",
+                change=(matrix.set, "['radius', $event.target.value]"), data_field="matrix-radius",
+                style="width: 56px",
             )  # fmt: skip
             html.Span("mm", classes="pv-small", style="flex: 1")
             v3.VBtn("Make", size="small", color="primary", classes="text-none", click=matrix.make,

@@ -82,10 +82,8 @@ class FileActions(SessionActions):
         return True
 
     async def open(self, path: str, kind: str | None = None, space: Space | None = None) -> bool:
-        """Open a file beside everything else; return whether it was, rather than cancelled.
-
-        A file of values colours the chosen tractogram, or the chosen mesh.
-        """
+        """Open a file beside everything else; return whether it was, rather than cancelled."""
+        # A file of values colours the chosen tractogram, or the chosen mesh.
         app = self._app
         name = Path(path).name
         if path.lower().endswith(VALUES):

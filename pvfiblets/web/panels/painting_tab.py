@@ -10,6 +10,7 @@ import numpy as np
 
 from pvfiblets.query.painting import kernels
 from pvfiblets.web.actions import Actions
+from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.describe import typed
 from pvfiblets.web.panels.elements import eye, html, v3
 from pvfiblets.web.scene.confined import check_name
@@ -19,8 +20,7 @@ from pvfiblets.web.session.painting import USES
 
 __all__ = ["PAINTING", "PaintActions", "build", "over"]
 
-PAINTING = f"{list(TOOLS)}.includes(tool)"
-"""Whether a tool that paints is in hand, for the page."""
+PAINTING = f"{list(TOOLS)}.includes(tool)"  # whether a tool that paints is in hand, for the page
 
 ICONS = (
     ("brush", "mdi-brush", "Brush (N)"),
@@ -31,8 +31,7 @@ ICONS = (
     ("grow", "mdi-auto-fix", "Grow over voxels of like values (W)"),
 )
 SUFFIXES = (".nii.gz", ".nii")
-AT_ONCE = ("fill", "outline", "sphere", "grow")
-"""Tools that need one list of places."""
+AT_ONCE = ("fill", "outline", "sphere", "grow")  # tools that need one list of places
 
 
 class PaintActions(Actions):
@@ -196,10 +195,6 @@ class PaintActions(Actions):
         axes = self._painting.matrix[:3, :3]
         return int(np.argmax(abs(pane.toward @ axes) / np.linalg.norm(axes, axis=0)))
 
-    def _show(self) -> None:
-        with self._app.state:
-            self.refresh()
-
     def move(self, name: str, by: int) -> None:
         """Move a region up or down in the list."""
         self._app.scene.painting.move_painted(name, 1 if by == 1 else -1)
@@ -254,12 +249,11 @@ def _at_hand(app: Any) -> None:
         html.Span(classes="pv-dot", title=("painting.active",), style=(
             "{ background: (painting.regions.find((r) => r.name === painting.active) || {}).color }",))  # fmt: skip
         for name, icon, hint in ICONS:
-            with v3.VBtn(
-                icon=True, size="x-small", aria_label=hint, variant=(f"tool === '{name}' ? 'flat' : 'text'",),
+            ui.icon_button(
+                icon, hint, variant=(f"tool === '{name}' ? 'flat' : 'text'",),
                 color=(f"tool === '{name}' ? 'primary' : 'white'",), data_paint_at_hand=name,
                 click=f"tool = tool === '{name}' ? 'rotate' : '{name}'",
-            ):  # fmt: skip
-                v3.VIcon(icon, size=18)
+            )  # fmt: skip
         for step, icon, hint in ((1, "mdi-chevron-up", "Next slice"), (-1, "mdi-chevron-down", "Slice before")):
             v3.VBtn(icon=icon, size="x-small", variant="text", color="white", aria_label=hint,
                     data_slice_step=str(step))  # fmt: skip
@@ -270,11 +264,10 @@ def build(app: Any) -> None:
     paint = app.painting
     with html.Div(classes="pv-pair pr-2"):
         html.Div("Painted regions", classes="pv-head", style="flex: 1")
-        v3.VBtn("Labels", size="x-small", variant="text", classes="text-none", prepend_icon="mdi-folder-open-outline",
-                click=(app.files.browse, "['', 'painted']"), data_action="open-labels",
-                title="Take the labels of a file as regions")  # fmt: skip
-        v3.VBtn("Region", size="x-small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
-                click=paint.add, data_action="add-painted")  # fmt: skip
+        ui.button("Labels", variant="text", prepend_icon="mdi-folder-open-outline",
+                  click=(app.files.browse, "['', 'painted']"), data_action="open-labels",
+                  title="Take the labels of a file as regions")  # fmt: skip
+        ui.button("Region", prepend_icon="mdi-plus", click=paint.add, data_action="add-painted")
     html.Div(
         "Add a region and paint it on a slice; streamlines that pass it, miss it, end or stay in it are shown alone.",
         v_if="!painting.regions.length", classes="pv-small px-3",
@@ -284,9 +277,7 @@ def build(app: Any) -> None:
             for name, icon, hint in ICONS:
                 with v3.VBtn(
                     icon=True, size="small", density="comfortable", aria_label=hint, data_paint_tool=name,
-                    variant=(f"tool === '{name}' ? 'flat' : 'tonal'",),
-                    color=(f"tool === '{name}' ? 'primary' : undefined",),
-                    click=f"tool = tool === '{name}' ? 'rotate' : '{name}'",
+                    click=f"tool = tool === '{name}' ? 'rotate' : '{name}'", **ui.pressed(f"tool === '{name}'"),
                 ):  # fmt: skip
                     v3.VIcon(icon, size=18)
                     v3.VTooltip(hint, activator="parent", location="bottom")
@@ -297,27 +288,27 @@ def build(app: Any) -> None:
             v3.VBtn("2-D", value="2-D", size="x-small", classes="text-none", title="In the slice alone")
             v3.VBtn("3-D", value="3-D", size="x-small", classes="text-none", title="In slices beside it, too",
                     data_action="deep")  # fmt: skip
-        with html.Div(classes="pv-row", v_if="tool === 'grow'"):
-            html.Label("Range ±", title="How far values may be from the one that is clicked, of the image's window")
+        with ui.labelled(
+            "Range ±", "How far values may be from the one that is clicked, of the image's window",
+            v_if="tool === 'grow'",
+        ):  # fmt: skip
             with html.Div(classes="pv-pair"):
-                v3.VSlider(
-                    model_value=("grow_share",), min=0, max=50, step=1, density="compact", hide_details=True,
-                    color="primary", thumb_size=14, track_size=3, end=(paint.set_share, "[$event]"),
+                ui.slider(
+                    model_value=("grow_share",), min=0, max=50, step=1, end=(paint.set_share, "[$event]"),
                     aria_label="Range of values that are grown over, per cent of the image's window",
                 )  # fmt: skip
-                html.Input(classes="pv-num", style="width: 52px", inputmode="decimal", value=("grow_share",),
-                           change=(paint.set_share, "[$event.target.value]"), aria_label="Range, per cent")  # fmt: skip
+                ui.number_field(style="width: 52px", value=("grow_share",),
+                                change=(paint.set_share, "[$event.target.value]"),
+                                aria_label="Range, per cent")  # fmt: skip
                 html.Span("%", classes="pv-small")
-        with html.Div(classes="pv-row", v_if="!['fill', 'outline', 'grow'].includes(tool)"):
-            html.Label("Brush")
+        with ui.labelled("Brush", v_if="!['fill', 'outline', 'grow'].includes(tool)"):
             with html.Div(classes="pv-pair"):
-                v3.VSlider(
-                    model_value=("brush",), min=0.5, max=20, step=0.5, density="compact", hide_details=True,
-                    color="primary", thumb_size=14, track_size=3, end=(paint.set_brush, "[$event]"),
+                ui.slider(
+                    model_value=("brush",), min=0.5, max=20, step=0.5, end=(paint.set_brush, "[$event]"),
                     aria_label="Radius of the brush, mm",
                 )  # fmt: skip
-                html.Input(classes="pv-num", style="width: 52px", inputmode="decimal", value=("brush",),
-                           change=(paint.set_brush, "[$event.target.value]"), aria_label="Radius, mm")  # fmt: skip
+                ui.number_field(style="width: 52px", value=("brush",),
+                                change=(paint.set_brush, "[$event.target.value]"), aria_label="Radius, mm")  # fmt: skip
                 html.Span("mm", classes="pv-small")
         with html.Div(v_for="r in painting.regions", key="r.name", data_painted=("r.name",), classes="pv-region"):
             with html.Div(classes="pv-pair px-3 pt-1"):
@@ -330,22 +321,16 @@ def build(app: Any) -> None:
                     classes="pv-num", style="flex: 1; width: auto", value=("r.name",), maxlength=60, data_field="name",
                     change=(paint.rename, "[r.name, $event.target.value]"), aria_label="Name of the painted region",
                 )  # fmt: skip
-                with v3.VBtn(
-                    icon=True, size="x-small", click=(paint.choose, "[r.name]"), aria_label="Paint this one",
-                    variant=("painting.active === r.name ? 'flat' : 'text'",), data_action="paint-this",
-                    color=("painting.active === r.name ? 'primary' : undefined",),
-                ):  # fmt: skip
-                    v3.VIcon("mdi-brush", size=16)
-                with v3.VBtn(
-                    icon=True, size="x-small", variant="text", click=(paint.remove, "[r.name]"), aria_label="Remove"
-                ):
-                    v3.VIcon("mdi-delete-outline", size=18)
+                ui.icon_button(
+                    "mdi-brush", "Paint this one", 16, click=(paint.choose, "[r.name]"), data_action="paint-this",
+                    **ui.pressed("painting.active === r.name", "text"),
+                )  # fmt: skip
+                ui.icon_button("mdi-delete-outline", "Remove", click=(paint.remove, "[r.name]"))
             with html.Div(classes="pv-pair px-3 pt-1"):
-                v3.VSelect(
+                ui.select(
                     items=(repr([{"title": title, "value": use} for use, title in USES.items()]),),
-                    model_value=("r.use",), density="compact", variant="outlined", hide_details=True,
-                    update_modelValue=(paint.set, "[r.name, 'use', $event]"), aria_label="What streamlines do there",
-                    data_select="use",
+                    model_value=("r.use",), update_modelValue=(paint.set, "[r.name, 'use', $event]"),
+                    aria_label="What streamlines do there", data_select="use",
                 )  # fmt: skip
                 for by, icon, hint in ((-1, "mdi-arrow-up", "Earlier"), (1, "mdi-arrow-down", "Later")):
                     v3.VBtn(
@@ -361,5 +346,5 @@ def build(app: Any) -> None:
         with html.Div(classes="pv-pair px-3 py-2"):
             html.Input(classes="pv-num", style="flex: 1; width: auto", placeholder="regions.nii.gz", id="painting-name",
                        v_model=("painting_name",), aria_label="Name of the file")  # fmt: skip
-            v3.VBtn("Save", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-content-save-outline",
-                    click=(paint.save, "[painting_name || 'regions']"), data_action="save-painted")  # fmt: skip
+            ui.button("Save", size="small", prepend_icon="mdi-content-save-outline",
+                      click=(paint.save, "[painting_name || 'regions']"), data_action="save-painted")  # fmt: skip

@@ -16,8 +16,7 @@ __all__ = ["SESSION", "SessionActions"]
 
 logger = logging.getLogger("pvfiblets.web")
 
-SESSION = ".json"
-"""The suffix of sessions."""
+SESSION = ".json"  # the suffix of sessions
 
 QUIET, LATEST = 1.0, 10.0  # seconds after the last, and after the first change that is not kept yet
 LARGEST_KEPT = 64 << 20  # bytes

@@ -10,6 +10,7 @@ import numpy as np
 from pvfiblets.plotting.slices.settings import MEANING
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.panels import atlas_tab, painting_tab
+from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.charts import short
 from pvfiblets.web.panels.describe import typed
 from pvfiblets.web.panels.elements import fold, html, v3
@@ -28,8 +29,7 @@ ICONS = {
     "grid": "mdi-view-grid-outline",
     "oblique": "mdi-square-outline",
 }
-TILTED = [30.0, 0.0]
-"""Angles that an oblique slice begins with, degrees."""
+TILTED = [30.0, 0.0]  # angles that an oblique slice begins with, degrees
 MOST_STEP = 100  # voxels at once
 
 
@@ -76,8 +76,7 @@ class SliceActions(Actions):
 
     def changed(self) -> None:
         """Show the changes, in the tab and in the frame."""
-        with self._app.state:
-            self.refresh()
+        self._show()
         self._app.stream.request()
 
     def set_layout(self, layout: str) -> None:
@@ -273,35 +272,30 @@ def build(app: Any) -> None:
             classes="pv-small px-3 pt-3",
         )
         with html.Div(classes="pa-3", style="display: flex; flex-wrap: wrap; gap: 6px"):
-            v3.VBtn("Open an image", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
-                    click=(app.files.browse, "['', 'slices']"), data_action="open-slices")  # fmt: skip
-            v3.VBtn("Slices of {{ slicing.volume }}", v_if="slicing.volume", size="small", variant="tonal",
-                    classes="text-none", style="max-width: 100%", click=(slices.set_layout, "['beside']"),
-                    data_action="slices-of-volume")  # fmt: skip
+            ui.button("Open an image", size="small", prepend_icon="mdi-plus",
+                      click=(app.files.browse, "['', 'slices']"), data_action="open-slices")  # fmt: skip
+            ui.button("Slices of {{ slicing.volume }}", v_if="slicing.volume", size="small", style="max-width: 100%",
+                      click=(slices.set_layout, "['beside']"), data_action="slices-of-volume")  # fmt: skip
     with html.Div(v_if="slicing.shown"):
         with html.Div(classes="px-3 pt-2", style="display: flex; flex-wrap: wrap; gap: 4px"):
             for name, title in LAYOUTS.items():
                 v3.VBtn(
                     title.split(",")[0].replace("three slices", "slices"), size="x-small", classes="text-none px-2",
-                    variant=(f"slicing.layout === '{name}' ? 'flat' : 'tonal'",), title=title,
-                    color=(f"slicing.layout === '{name}' ? 'primary' : undefined",),
-                    click=(slices.set_layout, f"['{name}']"), data_layout_button=name,
+                    title=title, click=(slices.set_layout, f"['{name}']"), data_layout_button=name,
+                    **ui.pressed(f"slicing.layout === '{name}'"),
                 )  # fmt: skip
         with html.Div(classes="pv-pair pr-2"):
             html.Div("Cross-hair", classes="pv-head", style="flex: 1")
-            v3.VBtn("Image", size="x-small", variant="text", classes="text-none", prepend_icon="mdi-plus",
-                    click=(app.files.browse, "['', 'slices']"), data_action="open-slices",
-                    title="Lay another image over it")  # fmt: skip
+            ui.button("Image", variant="text", prepend_icon="mdi-plus", click=(app.files.browse, "['', 'slices']"),
+                      data_action="open-slices", title="Lay another image over it")  # fmt: skip
         for kind, label in (("position", "mm"), ("voxel", "Voxel")):
-            with html.Div(classes="pv-row", data_place=kind):
-                html.Label(label)
-                with html.Div(classes="pv-pair"):
-                    for axis, name in enumerate("xyz" if kind == "position" else "ijk"):
-                        html.Input(
-                            classes="pv-num", inputmode="decimal", style="flex: 1; width: 0",
-                            value=(f"slicing.{kind}[{axis}] ?? ''",), aria_label=f"{label} {name}",
-                            change=(slices.set_part, f"['{kind}', {axis}, $event.target.value]"),
-                        )  # fmt: skip
+            with ui.labelled(label, data_place=kind), html.Div(classes="pv-pair"):
+                for axis, name in enumerate("xyz" if kind == "position" else "ijk"):
+                    ui.number_field(
+                        style="flex: 1; width: 0", value=(f"slicing.{kind}[{axis}] ?? ''",),
+                        aria_label=f"{label} {name}",
+                        change=(slices.set_part, f"['{kind}', {axis}, $event.target.value]"),
+                    )  # fmt: skip
         with html.Div(v_for="(row, i) in slicing.values", key="i", classes="pv-row", data_under=("row[0]",)):
             html.Label("{{ row[0] }}", classes="text-truncate", title=("row[0]",))
             html.Div("{{ row[1] }}", classes="pv-value")
@@ -312,9 +306,8 @@ def build(app: Any) -> None:
                 title=("s.name + ': which of its volumes is shown (comma, full stop)'",),
             )
             with html.Div(classes="pv-pair"):
-                v3.VSlider(
-                    model_value=("s.index",), min=0, max=("s.last",), step=1, density="compact", hide_details=True,
-                    color="primary", thumb_size=14, track_size=3, aria_label=("'Volume of ' + s.name",),
+                ui.slider(
+                    model_value=("s.index",), min=0, max=("s.last",), step=1, aria_label=("'Volume of ' + s.name",),
                     end=(app.set_property, "[s.id, 'index', $event]"),
                     data_live=("JSON.stringify(['property', s.id, 'index'])",),
                 )  # fmt: skip
@@ -335,45 +328,40 @@ def _panes(app: Any) -> None:
     slices = app.slices
     fold("Panes", "panes_open", data_action="panes")
     with html.Div(v_if="panes_open", id="panes"):
-        with html.Div(classes="pv-row"):
-            html.Label("Left is", title="Whether the patient's right or left is on the left of a pane")
+        with ui.labelled("Left is", "Whether the patient's right or left is on the left of a pane"):
             with v3.VBtnToggle(
                 model_value=("slicing.convention",), mandatory=True, density="compact", style="height: 26px",
                 update_modelValue=(slices.set_convention, "[$event]"),
             ):  # fmt: skip
                 v3.VBtn("R", value="radiological", size="x-small", title="Radiological: the patient's right")
                 v3.VBtn("L", value="neurological", size="x-small", title="Neurological: the patient's left")
-        with html.Div(classes="pv-row"):
-            html.Label("Slab", title="How thick the slab is whose streamlines are shown over a slice")
+        with ui.labelled("Slab", "How thick the slab is whose streamlines are shown over a slice"):
             with html.Div(classes="pv-pair"):
-                html.Input(
-                    classes="pv-num", inputmode="decimal", value=("slicing.thickness",), aria_label="Slab, mm",
+                ui.number_field(
+                    value=("slicing.thickness",), aria_label="Slab, mm",
                     change=(slices.set_thickness, "[$event.target.value]"),
                 )  # fmt: skip
                 html.Span("mm", classes="pv-small")
         for name, label in (
             ("cross_hair", "Cross-hair"), ("planes", "Slices in 3-D"), ("tilted", "Oblique slice"),
         ):  # fmt: skip
-            with html.Div(classes="pv-row"):
-                html.Label(label)
-                v3.VSwitch(
-                    model_value=(f"slicing.{name}",), density="compact", hide_details=True, color="primary",
-                    update_modelValue=(slices.set_switch, f"['{name}', !!$event]"), aria_label=label,
+            with ui.labelled(label):
+                ui.switch(
+                    model_value=(f"slicing.{name}",), update_modelValue=(slices.set_switch, f"['{name}', !!$event]"),
+                    aria_label=label,
                 )  # fmt: skip
         with html.Div(v_if="slicing.tilted"):
             for which, label in enumerate(("Tilt", "Turn")):
-                with html.Div(classes="pv-row"):
-                    html.Label(label, title="Degrees, about the cross-hair; or drag a handle of its line in a pane")
+                with ui.labelled(label, "Degrees, about the cross-hair; or drag a handle of its line in a pane"):
                     with html.Div(classes="pv-pair"):
-                        v3.VSlider(
-                            model_value=(f"slicing.oblique[{which}]",), min=-90, max=90, step=1, density="compact",
-                            hide_details=True, color="primary", thumb_size=14, track_size=3, aria_label=label,
+                        ui.slider(
+                            model_value=(f"slicing.oblique[{which}]",), min=-90, max=90, step=1, aria_label=label,
                             end=(slices.set_angle, f"[{which}, $event]"),
                             data_live=(f"JSON.stringify(['oblique', '', '{which}'])",),
                         )  # fmt: skip
                         held = f"held.at === 'oblique  {which}'"
-                        html.Input(
-                            classes="pv-num", style="width: 52px", inputmode="decimal", aria_label=f"{label}, degrees",
+                        ui.number_field(
+                            style="width: 52px", aria_label=f"{label}, degrees",
                             value=(f"{held} ? held.shown[0] : slicing.oblique[{which}]",),
                             change=(slices.set_angle, f"[{which}, $event.target.value]"),
                         )  # fmt: skip

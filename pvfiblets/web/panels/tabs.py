@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pvfiblets.web.panels import bundles_tab, slices_tab
+from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.controls import NAMES
 from pvfiblets.web.panels.elements import eye, fold, html, v3
 from pvfiblets.web.panels.writing import EXPORTS
@@ -45,13 +46,12 @@ def _slider_rows(change: Any, typed: Any, kind: str, owner: str, rows: str) -> N
     shown = f"(held.at === '{kind} ' + {owner} + ' ' + c.name ? held.shown : c.shown)"
 
     def field(end: int, label: str) -> None:
-        html.Input(
-            classes="pv-num", inputmode="decimal", value=(f"{shown}[{end}]",), style="width: 60px", title="mm",
+        ui.number_field(
+            value=(f"{shown}[{end}]",), style="width: 60px", title="mm",
             change=(typed, f"[{owner}, c.name, {end}, $event.target.value]"), aria_label=(f"c.label + '{label}, mm'",),
         )  # fmt: skip
 
-    with html.Div(v_for=f"c in {rows}", key="c.name", classes="pv-row", data_control=("c.name",)):
-        html.Label("{{ c.label }}", title=("c.help || ''",))
+    with ui.labelled("{{ c.label }}", ("c.help || ''",), v_for=f"c in {rows}", key="c.name", data_control=("c.name",)):
         with html.Div(style="min-width: 0"):
             common: dict[str, Any] = {
                 "min": ("c.limits[0]",), "max": ("c.limits[1]",), "step": ("c.step",), "density": "compact",
@@ -75,13 +75,9 @@ def _slider_rows(change: Any, typed: Any, kind: str, owner: str, rows: str) -> N
 def _clip(app: Any) -> None:
     with html.Div(classes="pa-2", style="display: flex; flex-wrap: wrap; gap: 6px"):
         for kind, title in CUTS:
-            v3.VBtn(
-                title, size="small", variant="tonal", classes="text-none", click=(app.cuts.add, f"['{kind}']"),
-                prepend_icon="mdi-plus", data_cut=kind,
-            )  # fmt: skip
-        v3.VBtn(
-            "Mesh", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
-            click=(app.files.browse, "['', 'clip']"), data_cut="mesh",
+            ui.button(title, size="small", click=(app.cuts.add, f"['{kind}']"), prepend_icon="mdi-plus", data_cut=kind)
+        ui.button(
+            "Mesh", size="small", prepend_icon="mdi-plus", click=(app.files.browse, "['', 'clip']"), data_cut="mesh",
         )  # fmt: skip
     html.Div(
         "Add a plane, a box or another shape, which hides its other side. A cut applies to all tractograms, or to "
@@ -92,30 +88,26 @@ def _clip(app: Any) -> None:
         with html.Div(classes="pv-pair px-2 pt-2"):
             eye("clip.enabled", "Switch off", "Switch on", click=(app.cuts.enable, "[clip.id, !clip.enabled]"))
             html.Span("{{ clip.name }}", style="flex: 1; font-size: 13px; font-weight: 500")
-            v3.VBtn(
-                "{{ clip.side }}", size="x-small", variant="tonal", classes="text-none",
-                click=(app.cuts.turn, "[clip.id, !clip.inside]"), title="Show the other side", data_action="side",
+            ui.button(
+                "{{ clip.side }}", click=(app.cuts.turn, "[clip.id, !clip.inside]"), title="Show the other side",
+                data_action="side",
             )  # fmt: skip
-            with v3.VBtn(
-                icon=True, size="x-small", variant="text", click=(app.cuts.remove, "[clip.id]"), aria_label="Remove"
-            ):
-                v3.VIcon("mdi-delete-outline", size=18)
+            ui.icon_button("mdi-delete-outline", "Remove", click=(app.cuts.remove, "[clip.id]"))
         with html.Div(v_if="clip.axes", classes="pv-pair px-3 pt-1", style="flex-wrap: wrap"):
             for axis, name in zip("xyz", NAMES, strict=True):
                 v3.VBtn(
-                    name.capitalize(), size="x-small", variant=(f"clip.axis === '{axis}' ? 'flat' : 'tonal'",),
-                    color=(f"clip.axis === '{axis}' ? 'primary' : undefined",), classes="text-none px-2",
+                    name.capitalize(), size="x-small", classes="text-none px-2",
                     click=(app.cuts.set_axis, f"[clip.id, '{axis}']"), data_axis=axis,
+                    **ui.pressed(f"clip.axis === '{axis}'"),
                 )  # fmt: skip
             v3.VBtn("View", size="x-small", variant="tonal", title="Facing the camera", classes="text-none px-2",
                     click=(app.cuts.set_axis, "[clip.id, 'view']"), data_axis="view")  # fmt: skip
         _slider_rows(app.cuts.set_value, app.cuts.set_end, "clip", "clip.id", "clip.controls")
-        with html.Div(classes="pv-row"):
-            html.Label("Cuts")
-            v3.VSelect(
+        with ui.labelled("Cuts"):
+            ui.select(
                 items=("clip.items",), model_value=("clip.layers",), multiple=True, placeholder="nothing",
-                density="compact", variant="outlined", hide_details=True, aria_label="Layers that are cut",
-                update_modelValue=(app.cuts.set_layers, "[clip.id, $event]"), data_select="clip-layers",
+                aria_label="Layers that are cut", update_modelValue=(app.cuts.set_layers, "[clip.id, $event]"),
+                data_select="clip-layers",
             )  # fmt: skip
         v3.VDivider(classes="mt-2")
 
@@ -129,50 +121,42 @@ def _filter(app: Any) -> None:
             html.Span(
                 "{{ held.counted || filters.counted }}", classes="pv-value", style="flex: 1", data_value="counted"
             )
-            v3.VBtn("Show all", size="x-small", variant="tonal", classes="text-none", click=app.filtering.clear,
-                    disabled=("!filters.active",))  # fmt: skip
+            ui.button("Show all", click=app.filtering.clear, disabled=("!filters.active",))
         html.Div("Criteria", classes="pv-head")
         with html.Div(v_for="c in filters.criteria", key="c.name", data_criterion=("c.name",)):
             with html.Div(classes="pv-pair px-3"):
                 html.Span("{{ c.label }}", style="flex: 1; font-size: 13px")
-                with v3.VBtn(
-                    icon=True, size="x-small", variant="text", aria_label="Remove",
-                    click=(app.filtering.remove, "[c.name]"),
-                ):  # fmt: skip
-                    v3.VIcon("mdi-close", size=16)
+                ui.icon_button("mdi-close", "Remove", 16, click=(app.filtering.remove, "[c.name]"))
             html.Div(v_html=("c.chart",), classes="pv-chart mx-4")
-            v3.VRangeSlider(
-                model_value=("c.value",), min=("c.limits[0]",), max=("c.limits[1]",), step=("c.step",),
-                end=(app.filtering.set_criterion, "[c.name, $event]"), density="compact", hide_details=True,
-                color="primary", thumb_size=14, track_size=3, classes="mx-4", aria_label=("c.label",),
+            ui.slider(
+                "VRangeSlider", model_value=("c.value",), min=("c.limits[0]",), max=("c.limits[1]",), step=("c.step",),
+                end=(app.filtering.set_criterion, "[c.name, $event]"), classes="mx-4", aria_label=("c.label",),
                 data_live=("JSON.stringify(['criterion', 'of', c.name])",),
             )  # fmt: skip
             shown = "(held.at === 'criterion of ' + c.name ? held.shown : c.shown)"
             with html.Div(classes="pv-pair px-4 pb-2", style="justify-content: space-between"):
                 for end in (0, 1):
-                    html.Input(
-                        classes="pv-num", inputmode="decimal", value=(f"{shown}[{end}]",),
+                    ui.number_field(
+                        value=(f"{shown}[{end}]",),
                         change=(app.filtering.set_end, f"[c.name, {end}, $event.target.value]"),
                         aria_label=(f"c.label + ({end} ? ', most' : ', least')",),
                     )  # fmt: skip
-        v3.VSelect(
-            label="Add a criterion", items=("filters.more",), model_value=("null",), density="compact",
-            variant="outlined", hide_details=True, classes="mx-3 my-1", id="add-criterion",
-            update_modelValue=(app.filtering.add, "[$event]"),
+        ui.select(
+            label="Add a criterion", items=("filters.more",), model_value=("null",), classes="mx-3 my-1",
+            id="add-criterion", update_modelValue=(app.filtering.add, "[$event]"),
         )  # fmt: skip
         with html.Div(v_if="filters.groups && filters.groups.length"):
             html.Div("Groups", classes="pv-head")
-            v3.VSelect(
+            ui.select(
                 items=("filters.groups",), model_value=("filters.shown_groups",), multiple=True, chips=True,
-                closable_chips=True, clearable=True, placeholder="all", density="compact", variant="outlined",
-                hide_details=True, classes="mx-3", update_modelValue=(app.filtering.set_groups, "[$event]"),
+                closable_chips=True, clearable=True, placeholder="all", classes="mx-3",
+                update_modelValue=(app.filtering.set_groups, "[$event]"),
             )  # fmt: skip
         html.Div("Random subset", classes="pv-head")
         with html.Div(classes="pv-row"):
             html.Span("{{ held.at === 'share of streamlines' ? held.shown[0] : filters.share }} %", classes="pv-value")
-            v3.VSlider(
-                model_value=("filters.share",), min=1, max=100, step=1, density="compact", hide_details=True,
-                color="primary", thumb_size=14, track_size=3, end=(app.filtering.set_share, "[$event]"),
+            ui.slider(
+                model_value=("filters.share",), min=1, max=100, step=1, end=(app.filtering.set_share, "[$event]"),
                 aria_label="Share of streamlines", data_live=("JSON.stringify(['share', 'of', 'streamlines'])",),
             )  # fmt: skip
         _regions(app)
@@ -186,13 +170,11 @@ def _regions(app: Any) -> None:
             v_if="filters.regions.length", click="show_regions = !show_regions", title="Show them in the picture",
             )  # fmt: skip
     with html.Div(classes="pv-pair px-3 pb-1", style="flex-wrap: wrap"):
-        v3.VBtn("Sphere", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
-                click=(regions.add, "['sphere']"), data_region="sphere")  # fmt: skip
-        v3.VBtn("Box", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
-                click=(regions.add, "['box']"), data_region="box")  # fmt: skip
-        v3.VBtn("File", size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus",
-                title="A closed mesh, or a volume of labels", click=(app.files.browse, "['', 'region']"),
-                data_region="file")  # fmt: skip
+        ui.button("Sphere", size="small", prepend_icon="mdi-plus", click=(regions.add, "['sphere']"),
+                  data_region="sphere")  # fmt: skip
+        ui.button("Box", size="small", prepend_icon="mdi-plus", click=(regions.add, "['box']"), data_region="box")
+        ui.button("File", size="small", prepend_icon="mdi-plus", title="A closed mesh, or a volume of labels",
+                  click=(app.files.browse, "['', 'region']"), data_region="file")  # fmt: skip
     html.Div(
         "Add a sphere or a box, and drag it or place it by a click; only streamlines through it stay visible. “not” "
         "keeps streamlines outside it.",
@@ -224,33 +206,29 @@ def _regions(app: Any) -> None:
                 title="Move it to the next click: on a streamline, a slice or a surface",
             ):  # fmt: skip
                 html.Span("Place")
-            with v3.VBtn(icon=True, size="x-small", variant="text", aria_label="Remove", click=(regions.drop, "[i]")):
-                v3.VIcon("mdi-delete-outline", size=18)
+            ui.icon_button("mdi-delete-outline", "Remove", click=(regions.drop, "[i]"))
         with html.Div(classes="pv-pair px-3 pt-1"):
-            v3.VBtn(
-                "not", size="x-small", variant=("r.not ? 'flat' : 'outlined'",), color=("r.not ? 'error' : ''",),
-                classes="text-none", click=(regions.set_not, "[i, !r.not]"), style="min-width: 36px",
+            ui.button(
+                "not", variant=("r.not ? 'flat' : 'outlined'",), color=("r.not ? 'error' : ''",),
+                click=(regions.set_not, "[i, !r.not]"), style="min-width: 36px",
                 title="Invert: keep all other streamlines",
             )  # fmt: skip
-            v3.VSelect(
-                items=("filters.hows",), model_value=("r.how",), density="compact", variant="outlined",
-                hide_details=True, update_modelValue=(regions.set_how, "[i, $event]"),
+            ui.select(
+                items=("filters.hows",), model_value=("r.how",), update_modelValue=(regions.set_how, "[i, $event]"),
                 aria_label="What streamlines do there",
             )  # fmt: skip
         html.Div("{{ r.file }}", v_if="r.file", classes="pv-small px-3 text-truncate", title=("r.file",))
-        with html.Div(v_if="r.kind === 'labels'", classes="pv-row"):
-            html.Label("Labels")
+        with ui.labelled("Labels", v_if="r.kind === 'labels'"):
             html.Input(
                 classes="pv-num", style="width: auto", value=("r.labels",), placeholder="all but 0",
                 change=(regions.set_labels, "[i, $event.target.value]"), aria_label="Labels, between commas",
                 title="Numbers of the labels, between commas",
             )  # fmt: skip
         _slider_rows(regions.set_value, regions.set_end, "region", "i", "r.controls")
-        with html.Div(v_if="filters.lines.length > 1 && r.named", classes="pv-row"):
-            html.Label("Used for")
-            v3.VSelect(
-                items=("filters.lines",), model_value=("r.layers",), multiple=True, density="compact",
-                variant="outlined", hide_details=True, aria_label="Layers that this region is used for",
+        with ui.labelled("Used for", v_if="filters.lines.length > 1 && r.named"):
+            ui.select(
+                items=("filters.lines",), model_value=("r.layers",), multiple=True,
+                aria_label="Layers that this region is used for",
                 update_modelValue=(regions.set_layers, "[i, $event]"), data_select="region-layers",
             )  # fmt: skip
         v3.VDivider(classes="mt-2")
@@ -265,12 +243,13 @@ def _selection(app: Any) -> None:
     with html.Div(v_if="selection.count"):
         with html.Div(classes="pv-pair px-3 pt-2"):
             html.Span("{{ selection.title }}", classes="pv-value", style="flex: 1", data_value="selected")
-            v3.VBtn("Clear", size="x-small", variant="tonal", classes="text-none", click=app.selecting.clear)
+            ui.button("Clear", click=app.selecting.clear)
         with html.Div(classes="pa-2", style="display: flex; flex-wrap: wrap; gap: 6px"):
-            v3.VBtn("As a layer", size="small", variant="tonal", classes="text-none", click=app.selecting.as_layer)
-            v3.VBtn("Table as CSV", size="small", variant="tonal", classes="text-none", data_action="table-csv",
-                    click="trigger('selection_csv').then((t) => t && utils.download('selection.csv', t, 'text/csv'))",
-                    )  # fmt: skip
+            ui.button("As a layer", size="small", click=app.selecting.as_layer)
+            ui.button(
+                "Table as CSV", size="small", data_action="table-csv",
+                click="trigger('selection_csv').then((t) => t && utils.download('selection.csv', t, 'text/csv'))",
+            )  # fmt: skip
         with html.Div(style="max-height: 46vh; overflow: auto", classes="px-2"):
             with html.Table(classes="pv-table", id="picked"):
                 with html.Thead():
@@ -281,16 +260,16 @@ def _selection(app: Any) -> None:
                         html.Td("{{ cell }}", v_for="(cell, k) in row", key="k")
         html.Div("{{ selection.more }}", v_if="selection.more", classes="pv-small px-3 py-1")
         with html.Div(v_if="selection.profiles && selection.profiles.length", classes="pa-2"):
-            with html.Div(classes="pv-row"):
-                html.Label("Profile of")
-                v3.VSelect(
-                    items=("selection.profiles",), model_value=("selection.profile",), density="compact",
-                    variant="outlined", hide_details=True, update_modelValue=(app.selecting.set_profile, "[$event]"),
+            with ui.labelled("Profile of"):
+                ui.select(
+                    items=("selection.profiles",), model_value=("selection.profile",),
+                    update_modelValue=(app.selecting.set_profile, "[$event]"),
                 )  # fmt: skip
             html.Div(v_html=("selection.chart",), id="profile")
-            v3.VBtn("Profile as CSV", size="x-small", variant="tonal", classes="text-none", data_action="profile-csv",
-                    click="trigger('profile_csv').then((t) => t && utils.download('profile.csv', t, 'text/csv'))",
-                    )  # fmt: skip
+            ui.button(
+                "Profile as CSV", data_action="profile-csv",
+                click="trigger('profile_csv').then((t) => t && utils.download('profile.csv', t, 'text/csv'))",
+            )  # fmt: skip
     _export(app)
 
 
@@ -298,22 +277,19 @@ def _export(app: Any) -> None:
     with html.Div(v_if="chosen_kind === 'tractogram' || chosen_kind === 'selection' || selection.count", id="export"):
         html.Div("Export", classes="pv-head")
         for label, key, items in (("Streamlines", "export_what", WHAT), ("To", "export_to", WHERE)):
-            with html.Div(classes="pv-row"):
-                html.Label(label)
-                v3.VSelect(
+            with ui.labelled(label):
+                ui.select(
                     v_model=(key,), items=(repr([{"title": title, "value": value} for value, title in items]),),
-                    density="compact", variant="outlined", hide_details=True, aria_label=label, data_select=key,
+                    aria_label=label, data_select=key,
                 )  # fmt: skip
-        with html.Div(classes="pv-row"):
-            html.Label("Name")
+        with ui.labelled("Name"):
             html.Input(
                 classes="pv-num", style="width: auto", value=("export_name",), placeholder="as the layer is called",
                 change="export_name = $event.target.value", aria_label="Name of the file", maxlength=200,
                 data_field="export-name",
             )  # fmt: skip
-        with html.Div(classes="pv-row"):
-            html.Label("Format")
-            with v3.VBtn("Export as…", size="small", variant="tonal", classes="text-none", data_action="export"):
+        with ui.labelled("Format"):
+            with ui.button("Export as…", size="small", data_action="export"):
                 with v3.VMenu(activator="parent"):
                     with v3.VList(density="compact"):
                         for suffix in EXPORTS:

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.loading import Cancel, Progress
     from pvfiblets.web.scene.originals import Original
 
-__all__ = ["EXPORTS", "write"]
-
 EXPORTS = (".trk", ".trx", ".tck", ".vtp", ".vtk", ".fiblets")
 """Suffixes of files that streamlines can be written to, everywhere on the page."""
 
@@ -28,11 +26,9 @@ def write(
     cancel: Cancel | None = None,
     original: Original | None = None,
 ) -> dict[str, Any]:
-    """Write some streamlines of a set to a file; may run in a thread of its own.
-
-    A ``.fiblets`` file gets the records as they are. Other formats get the points of the file that the set was made
-    from, where that is given.
-    """
+    """Write some streamlines of a set to a file; may run in a thread of its own."""
+    # A `.fiblets` file gets the records as they are. Other formats get the points of the file that the set was made
+    # from, where that is given.
     watch = Watch(progress, cancel)
     watch("choosing", 0.0)
     part = fiblets if len(ids) == fiblets.n_streamlines else fiblets.extract(ids)

@@ -19,10 +19,8 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.loading import Loaded
     from pvfiblets.web.session.shapes import Load
 
-    Colours = Callable[[Source], Any]
-    """From where a volume comes from to the volume that colours or filters lines."""
-    Ends = Callable[[Any, str, float], Any]
-    """From fiblets, a label volume's path and mm to the parcels of ends."""
+    Colours = Callable[[Source], Any]  # from where a volume comes from to the volume that colours or filters lines
+    Ends = Callable[[Any, str, float], Any]  # from fiblets, a label volume's path and mm to the parcels of ends
 
 __all__ = [
     "MOST_PLANES",
@@ -37,8 +35,7 @@ __all__ = [
     "split_cuts",
 ]
 
-MOST_PLANES = 6
-"""Most planes that VTK cuts a mesh or tubes by."""
+MOST_PLANES = 6  # most planes that VTK cuts a mesh or tubes by
 
 _CONDITION, _CONNECTION = "regions", "connection"
 

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LARGEST_PICTURE", "VIEWS", "Cameras", "check_camera"]
 
-VIEWS = tuple(DIRECTIONS)
-"""Names of the directions that one can look from."""
+VIEWS = tuple(DIRECTIONS)  # names of the directions that one can look from
 
 _LETTERS = (("R", "L"), ("A", "P"), ("S", "I"))
 NEAR = 6.0  # pixels of tolerance of a click

@@ -24,16 +24,10 @@ OPACITY = 0.55
 
 
 class Canvas:
-    """The painted regions of a scene, kept in step with its document.
-
-    Parameters
-    ----------
-    slicing : Slicing
-        Whose slices show them.
-    """
+    """The painted regions of a scene, kept in step with its document."""
 
     def __init__(self, slicing: Slicing) -> None:
-        self._slicing = slicing
+        self._slicing = slicing  # whose slices show them
         self._painting: Painting | None = None
         self._strokes: Strokes | None = None
         self._shown: np.ndarray = np.zeros((0, 0, 0), np.uint16)

@@ -36,16 +36,10 @@ class Entry:
 
 
 class Confined:
-    """The folder that browsers may open files from and save files to.
-
-    Parameters
-    ----------
-    root : str or Path
-        The folder. Links inside it may point to other places inside it.
-    """
+    """The folder that browsers may open files from and save files to."""
 
     def __init__(self, root: str | Path) -> None:
-        self.root = Path(root).resolve(strict=True)
+        self.root = Path(root).resolve(strict=True)  # the folder. Links inside it may point to other places inside it.
         if not self.root.is_dir():
             raise NotADirectoryError(20, "Not a directory", str(root))
 

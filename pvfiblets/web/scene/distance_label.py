@@ -8,12 +8,9 @@ from typing import Any
 
 from pvfiblets.web.session.document import Measurement
 
-__all__ = ["LABELS", "LINES", "NEAREST", "hidden_distances", "names_of", "show_distances"]
-
 _LINE, _TEXT = "measured-line", "measured-text"
 _COLOUR = "#ffcc00"
-NEAREST = (0.0, -66_000.0)
-"""Offset of lines, of VTK's depth units: before everything."""
+NEAREST = (0.0, -66_000.0)  # offset of lines, of VTK's depth units: before everything
 LINES: dict[str, Any] = {"color": _COLOUR, "line_width": 2.0, "lighting": False, "pickable": False}
 LABELS: dict[str, Any] = {
     "text_color": _COLOUR, "font_size": 14, "shape": None, "shadow": True, "show_points": False, "always_visible": True,

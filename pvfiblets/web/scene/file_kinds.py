@@ -23,17 +23,14 @@ __all__ = [
 MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf", *GIFTI, *FREESURFER)
 """Suffixes of surfaces; files of VTK's formats may hold lines instead."""
 
-OF_VERTICES = (*OF_GIFTI, *OF_FREESURFER)
-"""Suffixes of files with a number or a label for each vertex of a surface."""
+OF_VERTICES = (*OF_GIFTI, *OF_FREESURFER)  # suffixes of files with a number or a label for each vertex of a surface
 
-VALUES = (".tsf", *OF_VERTICES)
-"""Suffixes of files with values for the lines, or for the vertices, of another file."""
+VALUES = (".tsf", *OF_VERTICES)  # suffixes of files with values for the lines, or for the vertices, of another file
 
 TABLES = (".txt", ".ctab", ".label", ".lbl", ".tsv", ".label.gii", ".label.gii.gz")
 """Suffixes of files with names and colours of labels."""
 
-VTK_SUFFIXES = (".vtk", ".vtp")
-"""Suffixes of VTK's files that hold lines, surfaces or volumes."""
+VTK_SUFFIXES = (".vtk", ".vtp")  # suffixes of VTK's files that hold lines, surfaces or volumes
 
 SPACED = (*VTK_SUFFIXES, ".fib", ".vtu")
 """Suffixes of files that need not name the space of their coordinates: RAS+ or LPS+."""

@@ -233,10 +233,8 @@ def check_subset(value: Any) -> dict[str, Any]:
 def check_filters(
     value: Any, data: Any, groups: Any, place: Callable[[str], str], volume: Callable[[Any], Source]
 ) -> Filters:
-    """Return filters of a session file that fit some fiblets; ``groups`` are names of these by another list.
-
-    ``place`` gives a path as documents hold it, of a file that is there; ``volume`` the source of one that is read.
-    """
+    """Return filters of a session file that fit some fiblets; ``groups`` are names of these by another list."""
+    # `place` gives a path as documents hold it, of a file that is there; `volume` the source of one that is read.
     from pvfiblets.web.scene.layer_properties import value_names
 
     mapping(value, "filters", (), ("criteria", "images", "groups", "subset", "regions", "connection"))

@@ -9,8 +9,6 @@ from pvfiblets.slices.glyphs import TENSORS
 from pvfiblets.slices.spherical_harmonics import BASES
 from pvfiblets.web.scene.properties import Choices, Property
 
-__all__ = ["GLYPHS", "ROWS", "UNDER", "VECTORS", "GlyphLayers", "arguments", "covers"]
-
 GLYPHS, UNDER, VECTORS = "glyphs", "image_under", "vectors"
 _SIZE, _BASIS, _TENSOR = "glyph_size", "glyph_basis", "glyph_tensor"
 _BY_NUMBERS, _LONG = "glyph_colour", "glyph_length"

@@ -23,12 +23,7 @@ BESIDE = (".tsv", ".ctab", ".label", ".lbl")
 
 @dataclass(frozen=True, eq=False)
 class LabelledImage(SliceImage):
-    """An image, and what its labels are called.
-
-    Parameters
-    ----------
-    table : LabelTable, optional
-    """
+    """An image, and what its labels are called."""
 
     table: LabelTable | None = None
 

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LayerQueries"]
 
-MOST_POINTS = 4_000_000
-"""Greatest number of values in a histogram; of larger data an even share."""
+MOST_POINTS = 4_000_000  # greatest number of values in a histogram; of larger data an even share
 
 _KEPT = 64  # histograms
 

@@ -85,15 +85,12 @@ SELECTION = {
 }
 """Properties of lines that are arguments of ``actor.selection_style``, by the names that they have there."""
 
-LOOK = "look"
-"""A property of lines that stands for others: their actor gets these, with the look's values of effects."""
+LOOK = "look"  # A property of lines that stands for others: their actor gets these, with the look's values of effects
 
-PERCENTILES = (1.0, 99.0)
-"""Percentiles of non-zero voxels: the default window of volumes, as of slices."""
+PERCENTILES = (1.0, 99.0)  # percentiles of non-zero voxels: the default window of volumes, as of slices
 FEW = 64  # numbers; a volume of no more is one of labels
 
-RADIUS_SCALE = "radius_scale"
-"""A look of tubes that is no attribute of their actor: its tubes are others."""
+RADIUS_SCALE = "radius_scale"  # A look of tubes that is no attribute of their actor: its tubes are others
 
 _BY_NAME = {kind: {prop.name: prop for prop in table} for kind, table in TABLES.items()}
 
@@ -116,10 +113,8 @@ def beginning(kind: str, data: Any) -> dict[str, Any]:
 
 
 def _window(volume: Any) -> tuple[float, float] | None:
-    """Return between which values a volume's colours begin, a few very bright voxels left out; ``None`` for all.
-
-    Volumes of few numbers are labels or masks, with all values visible.
-    """
+    """Return between which values a volume's colours begin, a few very bright voxels left out; ``None`` for all."""
+    # Volumes of few numbers are labels or masks, with all values visible.
     import numpy as np
 
     from pvfiblets.slices.image import SAMPLED, window_of
@@ -141,10 +136,8 @@ def check(kind: str, name: Any, value: Any, data: Any, volumes: Choices = ()) ->
 
 
 def changed(kind: str, settings: Mapping[str, Any], name: str, value: Any, data: Any = None) -> dict[str, Any]:
-    """Return settings with one checked change, and with the settings that it resets or, for a look, sets.
-
-    The line widths of the data are needed for looks.
-    """
+    """Return settings with one checked change, and with the settings that it resets or, for a look, sets."""
+    # The line widths of the data are needed for looks.
     found = {**settings, name: value}
     if name == LOOK and value is not None:
         found |= {key: bool(one) if isinstance(one, Mapping) else one for key, one in settings_of(value, data).items()}
@@ -164,10 +157,8 @@ def describe(
 
 
 def looks(kind: str, settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what the settings mean for an actor: its attributes, in the order in which they are to be set.
-
-    Of a mesh, these are arguments of ``plotter.add_mesh``. Scalars that are a :class:`.Source` stand for that volume.
-    """
+    """Return what the settings mean for an actor: its attributes, in the order in which they are to be set."""
+    # Of a mesh, these are arguments of `plotter.add_mesh`. Scalars that are a `.Source` stand for that volume.
     if kind == "mesh":
         return _mesh(settings)
     found: dict[str, Any] = {RADIUS_SCALE: settings[RADIUS_SCALE]} if kind == "tubes" else {}

@@ -46,12 +46,9 @@ __all__ = ["Cancelled", "Files", "Loaded", "Watch"]
 
 MOST_REMEMBERED = 16  # exports whose points are not coded again
 
-Progress = Callable[[str, float], None]
-"""Called with the step's name and its finished share, from 0 to 1."""
-Cancel = Callable[[], bool]
-"""Whether to stop."""
-Stamp = tuple[int, int]
-"""When a file was changed last, in nanoseconds, and its bytes."""
+Progress = Callable[[str, float], None]  # called with the step's name and its finished share, from 0 to 1
+Cancel = Callable[[], bool]  # whether to stop
+Stamp = tuple[int, int]  # when a file was changed last, in nanoseconds, and its bytes
 
 
 class Cancelled(Exception):  # noqa: N818 - not an error: somebody wanted it
@@ -60,49 +57,26 @@ class Cancelled(Exception):  # noqa: N818 - not an error: somebody wanted it
 
 @dataclass(frozen=True, eq=False)
 class Loaded:
-    """Data of a layer, and their description.
+    """Data of a layer, and their description."""
 
-    Attributes
-    ----------
-    kind : str
-        Of the layers that it is for.
-    source : Source
-    name : str
-        For people.
-    data : FibletSet, SplineTubes, RaycastVolume or PolyData
-    facts : dict
-        Of the file, in JSON's types or nearly.
-    error : dict or None
-        ``error_mm`` and ``error_steps``, where compressing it here measured them.
-    kept : tuple of str
-        Kept per-point arrays, for scripts.
-    stamps : dict
-        Of the files that it was read from, as documents name them: time of the last change and size.
-    """
-
-    kind: str
+    kind: str  # of the layers that it is for
     source: Source
-    name: str
+    name: str  # for people
     data: Any
-    facts: dict[str, Any] = field(default_factory=dict)
-    error: dict[str, Any] | None = None
-    kept: tuple[str, ...] = ()
+    facts: dict[str, Any] = field(default_factory=dict)  # of the file, in JSON's types or nearly
+    error: dict[str, Any] | None = None  # `error_mm` and `error_steps`, where compressing it here measured them
+    kept: tuple[str, ...] = ()  # kept per-point arrays, for scripts
+    # of the files that it was read from, as documents name them: time of the last change and size
     stamps: dict[str, Stamp] = field(default_factory=dict)
 
 
 class Files:
-    """A scene's files, and the temporary files made from them.
-
-    Parameters
-    ----------
-    root : Path, optional
-        Paths are relative to it, and lead out of it neither by ``..`` nor by links; any path is allowed without.
-    allowed : iterable of Path
-        Files and folders outside of the root that may be opened all the same.
-    """
+    """A scene's files, and the temporary files made from them."""
 
     def __init__(self, root: Path | None = None, allowed: Iterable[Path] = ()) -> None:
+        # paths are relative to it, and lead out of it neither by `..` nor by links; any path is allowed without
         self.root = None if root is None else Path(root).resolve(strict=True)
+        # files and folders outside of the root that may be opened all the same
         self.allowed = [Path(path).resolve() for path in allowed]
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._numbers = itertools.count(1)  # two threads may load at once
@@ -268,16 +242,10 @@ class Files:
 
 
 class Watch:
-    """Passes progress on, and stops where that is wanted.
-
-    Parameters
-    ----------
-    progress, cancel : callable, optional
-        See :meth:`Files.load`.
-    """
+    """Passes progress on, and stops where that is wanted."""
 
     def __init__(self, progress: Progress | None, cancel: Cancel | None) -> None:
-        self._progress, self._cancel = progress, cancel
+        self._progress, self._cancel = progress, cancel  # see `Files.load`
 
     def __call__(self, what: str, share: float) -> None:
         """Report progress; raise :class:`Cancelled` if it was cancelled."""

@@ -20,10 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["SceneMatrix", "as_json", "check_connection", "check_matrix", "choices"]
 
-PARCELS = 1024
-"""Greatest number of parcels of a matrix."""
-WIDEST = 100.0
-"""mm about an end in which its parcel is looked for."""
+PARCELS = 1024  # greatest number of parcels of a matrix
+WIDEST = 100.0  # mm about an end in which its parcel is looked for
 
 
 class SceneMatrix:
@@ -61,10 +59,8 @@ class SceneMatrix:
             statistic=matrix.statistic, names=names, ends=ends,
         )  # fmt: skip
 
-    def show_matrix(self, matrix: Matrix | None, store: Store | None = None) -> None:
-        """Show a matrix beside the picture, with what :meth:`load_matrix` read; None for none."""
-        if store is not None:
-            self.scene.store.take(store)
+    def show_matrix(self, matrix: Matrix | None) -> None:
+        """Show a matrix beside the picture, whose data are in the store already; None for none."""
         self.scene.become(replace(self.scene.state, matrix=matrix), "the matrix" if matrix is not None else "no matrix")
 
     def set_connection(self, layer_id: str, pair: Any, labels: str = "", radius: float = 4.0) -> None:

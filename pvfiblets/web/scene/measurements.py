@@ -15,8 +15,6 @@ from pvfiblets.web.values import numbers, shown, whole
 if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
 
-__all__ = ["MOST_MEASUREMENTS", "SceneMeasurements", "check_measurements"]
-
 MOST_MEASUREMENTS = 64
 _FARTHEST = 1e12  # mm from the origin
 

@@ -19,25 +19,14 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
     from pvfiblets.web.session.document import Layer
 
-__all__ = ["Original", "original_of"]
-
 
 @dataclass(frozen=True, eq=False)
 class Original:
-    """The source of some streamlines.
-
-    Attributes
-    ----------
-    path : Path
-    values : tuple of Path
-        Files with values of all of its streamlines.
-    ids : ndarray of int64
-        Numbers of the streamlines in the file, rising.
-    """
+    """The source of some streamlines."""
 
     path: Path
-    values: tuple[Path, ...]
-    ids: np.ndarray
+    values: tuple[Path, ...]  # files with values of all of its streamlines
+    ids: np.ndarray  # numbers of the streamlines in the file, rising
 
     def chunks(self, watch: Watch) -> Iterator[Streamlines]:
         """Yield the streamlines as the file has them, piece by piece; one piece at least."""

@@ -20,21 +20,11 @@ Choices = Sequence[tuple[Any, str]]
 
 @dataclass(frozen=True)
 class Property(Row):
-    """One thing that can be set, or read, of a layer: a `Row` with all that it leaves out.
+    """One thing that can be set, or read, of a layer: a `Row` with all that it leaves out."""
 
-    Attributes
-    ----------
-    name : str
-        Of the setting; where an actor has the same, that of its attribute.
-    live : bool
-        Whether it is a setting of the actor, and not of the page alone.
-    usual : object
-        What actors do that are not told of it.
-    """
-
-    name: str = ""
-    live: bool = False
-    usual: Any = None
+    name: str = ""  # of the setting; where an actor has the same, that of its attribute
+    live: bool = False  # whether it is a setting of the actor, and not of the page alone
+    usual: Any = None  # what actors do that are not told of it
 
     @classmethod
     def own(cls, name: str, type: str, label: str, help: str, group: str = "Colours", default: Any = None,  # noqa: A002

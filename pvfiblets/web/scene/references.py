@@ -23,8 +23,6 @@ from pvfiblets.images import metaimage, mif, nrrd
 from pvfiblets.slices import fixels
 from pvfiblets.volumes import gifti_files
 
-__all__ = ["check_references"]
-
 _GLB = b"glTF"
 _GLB_JSON = 0x4E4F534A
 

@@ -15,8 +15,7 @@ __all__ = ["Place", "Wanted", "arrange"]
 Measure = Callable[[str, int], float]
 """Function from a text and the size of its letters to its width, in pixels of the window."""
 
-FONTS = (13, 11, 9)
-"""Sizes of letters, from the one that is taken where there is room; 72 points are an inch."""
+FONTS = (13, 11, 9)  # sizes of letters, from the one that is taken where there is room; 72 points are an inch
 SMALLEST_NAMES = 7
 BAR = 15.0  # width of the colours; all of these are pixels at 72 to an inch
 GAP = 12.0  # between what belongs to two bars
@@ -33,54 +32,27 @@ _LOOSE = " ([{,;:-"  # not at the end of a title that was shortened
 
 @dataclass(frozen=True)
 class Wanted:
-    """A bar that is to be shown.
-
-    Attributes
-    ----------
-    title : str
-    labels : tuple of str
-        All numbers that it may show, or its names.
-    named : bool
-        Whether they are names; then it shows all of them.
-    """
+    """A bar that is to be shown."""
 
     title: str
-    labels: tuple[str, ...]
-    named: bool = False
+    labels: tuple[str, ...]  # all numbers that it may show, or its names
+    named: bool = False  # whether they are names; then it shows all of them
 
 
 @dataclass(frozen=True)
 class Place:
-    """Position and size of a bar.
+    """Position and size of a bar."""
 
-    Attributes
-    ----------
-    title : str
-        As it is shown: it may be shortened.
-    left, bottom, width, height : float
-        Of the frame that VTK lays the bar out in, in pixels from the lower left corner.
-    ratio : float
-        The share of that width that the colours take.
-    font : int
-        Size of the title's letters.
-    label_font : int
-        Size of the letters of numbers or names.
-    labels : int
-        How many numbers.
-    gap : int
-        Pixels between colours and title, in addition to VTK's.
-    """
-
-    title: str
-    left: float
+    title: str  # as it is shown: it may be shortened
+    left: float  # of the frame that VTK lays the bar out in, in pixels from the lower left corner
     bottom: float
     width: float
     height: float
-    ratio: float
-    font: int
-    label_font: int
-    labels: int
-    gap: int
+    ratio: float  # the share of that width that the colours take
+    font: int  # size of the title's letters
+    label_font: int  # size of the letters of numbers or names
+    labels: int  # how many numbers
+    gap: int  # pixels between colours and title, in addition to VTK's
 
 
 def arrange(wanted: Sequence[Wanted], size: tuple[int, int], scale: float, measure: Measure) -> list[Place | None]:

@@ -18,12 +18,7 @@ MOST_BARS = 6
 
 
 class Bars:
-    """The colour bars of a plotter; they are placed anew whenever its window has another size.
-
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    """
+    """The colour bars of a plotter; they are placed anew whenever its window has another size."""
 
     def __init__(self, plotter: Any) -> None:
         self._plotter = plotter

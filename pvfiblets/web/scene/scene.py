@@ -59,27 +59,16 @@ __all__ = ["Change", "Scene"]
 
 MOST_LAYERS = 64
 MOST_VALUES = 64  # files of values of one layer
-LONGEST_NAME = 1024
-"""Largest number of characters of a layer's name."""
+LONGEST_NAME = 1024  # largest number of characters of a layer's name
 
 
 @dataclass(frozen=True)
 class Change:
-    """A change, as listeners receive it.
+    """A change, as listeners receive it."""
 
-    Attributes
-    ----------
-    what : str
-        What was done, for a list of things to undo.
-    key : tuple or None
-        Changes of one key that follow each other at once are one, as a slider's are.
-    whole : bool
-        They are one step however long they pause, like the moves of a drag.
-    """
-
-    what: str
-    key: tuple[str, ...] | None = None
-    whole: bool = False
+    what: str  # its name in a list of things to undo
+    key: tuple[str, ...] | None = None  # changes of one key that follow each other at once are one, as a slider's are
+    whole: bool = False  # they are one step however long they pause, like the moves of a drag
 
 
 @dataclass(frozen=True)
@@ -96,27 +85,14 @@ class Scene:
     """The scene of a session.
 
     All methods but :meth:`load` are for the thread that renders. None of them renders: call ``plotter.render()``.
-
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-        Drawn into; it is the scene's own.
-    root : Path, optional
-        Folder that paths are relative to and confined to; any path is allowed without.
-    allowed : iterable of Path
-        Files and folders outside of the root that may be opened all the same.
-    look : str, optional
-        That streamlines begin with (`pvfiblets.plotting.fiblets.looks`).
-    cluster : str, optional
-        Whose workers draw fiblets, as of ``plotter.add_fiblets``.
     """
 
     def __init__(
         self, plotter: Any, root: Path | None = None, *, allowed: Any = (), look: str | None = None,
-        cluster: str | None = None,
+        cluster: str | None = None,  # whose workers draw fiblets, as of `plotter.add_fiblets`
     ) -> None:  # fmt: skip
-        self.plotter = plotter
-        self._look, self._cluster = look, cluster
+        self.plotter = plotter  # drawn into; it is the scene's own
+        self._look, self._cluster = look, cluster  # that streamlines begin with (`pvfiblets.plotting.fiblets.looks`)
         self.files = Files(root, allowed)
         self._state = State(background=plotter.background_color.hex_rgb)
         self._drawn: dict[str, _Drawn] = {}
@@ -265,10 +241,8 @@ class Scene:
         self, path: str | Path, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None,
         space: Space | None = None,
     ) -> Loaded:  # fmt: skip
-        """Read a file, and compress it if need be, for :meth:`add`; may run in a thread of its own.
-
-        A file of VTK that names no space has coordinates of `space`.
-        """
+        """Read a file, and compress it if need be, for :meth:`add`; may run in a thread of its own."""
+        # A file of VTK that names no space has coordinates of `space`.
         if kind == "selection" or (kind is not None and kind not in layers.KINDS):
             raise ValueError(
                 f"kind is {kind!r}; choose one of {', '.join(k for k in layers.KINDS if k != 'selection')}"
@@ -449,10 +423,8 @@ class Scene:
         self.store.keep([self._state, *states])
 
     def volume_choices(self, layer: Layer) -> list[tuple[Any, str]]:
-        """Return what colours a layer by a volume, and how that is called.
-
-        These are the scene's volumes, its other images of one number per voxel, and what colours the layer now.
-        """
+        """Return what colours a layer by a volume, and how that is called."""
+        # These are the scene's volumes, its other images of one number per voxel, and what colours the layer now.
         others = [other for other in self.layers if other.kind == "image" and other.id != layer.id]
         named = {one.source.bare: one.name for one in others if self.data(one).data.n_volumes == 1}
         named |= {other.source: other.name for other in self.layers if other.kind == "volume"}

@@ -15,8 +15,6 @@ from pvfiblets.web.values import number, numbers, plain, shown, truth, whole
 if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
 
-__all__ = ["MODES", "SceneSelection"]
-
 MODES = ("replace", "add", "remove", "toggle")
 _LONGEST_LASSO = 4096
 _LONGEST_TABLE = 5000

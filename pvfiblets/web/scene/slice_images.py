@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.loading import Loaded
     from pvfiblets.web.scene.scene import Scene
 
-__all__ = ["SliceImages"]
-
 
 class SliceImages:
     """Images of a scene that are shown as slices: names of their labels, and how they are looked at."""
@@ -57,10 +55,8 @@ class SliceImages:
         return changed
 
     def set_slices(self, **changes: Any) -> SliceView:
-        """Look at slices in another way; arguments and errors as of :func:`.check_view`.
-
-        Only the angles of the oblique slice are part of the document, and can be undone.
-        """
+        """Look at slices in another way; arguments and errors as of :func:`.check_view`."""
+        # Only the angles of the oblique slice are part of the document, and can be undone.
         view = self.scene.slicing.view
         known = view.as_json()
         if unknown := [name for name in changes if name not in known]:

@@ -41,14 +41,11 @@ LAYOUTS = {
 """Layouts of views, for people."""
 
 CONVENTIONS = ("radiological", "neurological")
-NAMES = ("axial", "coronal", "sagittal", "3d", "oblique")
-"""Views in the order of the plotter's renderers."""
-VIEWS = (1, len(NAMES))
-"""The ``shape`` of a plotter that has all of them."""
+NAMES = ("axial", "coronal", "sagittal", "3d", "oblique")  # views in the order of the plotter's renderers
+VIEWS = (1, len(NAMES))  # the `shape` of a plotter that has all of them
 _THREE_D = NAMES.index("3d")
 
-WEIGHTS = "modulate"
-"""The setting that names the image which a direction-coded one is as bright as."""
+WEIGHTS = "modulate"  # the setting that names the image which a direction-coded one is as bright as
 
 OBLIQUE = "oblique"
 _THICKEST = 1000.0  # mm
@@ -56,32 +53,17 @@ _THICKEST = 1000.0  # mm
 
 @dataclass(frozen=True)
 class SliceView:
-    """The view of slices.
+    """The view of slices."""
 
-    Attributes
-    ----------
-    layout : str
-        Of `LAYOUTS`.
-    convention : str
-        Of `CONVENTIONS`.
-    thickness : float
-        Of the slabs whose streamlines are shown, mm.
-    cross_hair : bool
-    planes : bool
-        Whether slices are shown in the 3-D view.
-    position : tuple of 3 floats or None
-        The cross-hair, mm; the middle of the first image until it is known.
-    oblique : tuple of 2 floats or None
-        Of one more slice, through the cross-hair: how far it is tilted and turned, degrees. It is a part of the
-        document, so that it can be undone.
-    """
-
-    layout: str = "beside"
-    convention: str = "radiological"
-    thickness: float = 3.0
+    layout: str = "beside"  # of `LAYOUTS`
+    convention: str = "radiological"  # of `CONVENTIONS`
+    thickness: float = 3.0  # of the slabs whose streamlines are shown, mm
     cross_hair: bool = True
-    planes: bool = True
+    planes: bool = True  # whether slices are shown in the 3-D view
+    # the cross-hair, mm; the middle of the first image until it is known
     position: tuple[float, float, float] | None = None
+    # of one more slice, through the cross-hair: how far it is tilted and turned, degrees. It is a part of the document,
+    # so that it can be undone.
     oblique: tuple[float, float] | None = None
 
     def as_json(self) -> dict[str, Any]:
@@ -154,29 +136,18 @@ def ready_views(plotter: Any) -> None:
 
 
 class Slicing:
-    """The images of a scene, as slices in its plotter.
-
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-        Of the views `NAMES`, or of the first four, if there is to be an image.
-    turned : callable
-        Called with the angles of the oblique slice when it was turned by hand, and which drag of a handle does it, None
-        for none.
-
-    Attributes
-    ----------
-    workspace : Workspace or None
-        None as long as there is no image.
-    """
+    """The images of a scene, as slices in its plotter."""
 
     def __init__(
         self, plotter: Any, turned: Callable[[tuple[float, float], int | None], Any] = lambda *_: None
     ) -> None:
+        # called with the angles of the oblique slice when it was turned by hand, and which drag of a handle does it,
+        # None for none
+        # of the views `NAMES`, or of the first four, if there is to be an image
         self._plotter, self._turned = plotter, turned
         self._view = SliceView()
         self._glyphs = GlyphLayers()
-        self.workspace: Any = None
+        self.workspace: Any = None  # none as long as there is no image
         self.painted: Any = None  # of the stack, above all others
 
     # What is seen
@@ -271,10 +242,8 @@ class Slicing:
     # Layers
 
     def add(self, layer: Layer, image: LabelledImage, colours: Colours) -> Any:
-        """Show an image above the others; return its layer of the stack.
-
-        ``colours`` gives the image that a direction-coded one is as bright as.
-        """
+        """Show an image above the others; return its layer of the stack."""
+        # `colours` gives the image that a direction-coded one is as bright as.
         meaning = layer.settings[MEANING]
         made = {"kind": meaning, "labels": image.table if meaning == "labels" else None}
         if meaning == "direction" and layer.settings[VECTORS] != "scanner":

@@ -16,8 +16,7 @@ logger = logging.getLogger("pvfiblets.web")
 
 # What a browser sends is small: state changes, pointer events. Files come by POST.
 LARGEST_MESSAGE = MEBIBYTE
-LARGEST_SESSION = 256 * MEBIBYTE
-"""Bytes of a session file: no larger one is written or read."""
+LARGEST_SESSION = 256 * MEBIBYTE  # bytes of a session file: no larger one is written or read
 REFUSED = "The server refused what this page sent"
 # wslink cuts messages into chunks with a header each: an identifier, an offset, and the size of the whole message, as
 # little-endian uint32 (wslink/chunking.py). Its receiver allocates that size at once, so it is looked at here first.
@@ -25,36 +24,20 @@ CHUNK_HEADER = 12
 
 
 class RefusedError(Exception):
-    """A request that is turned away.
-
-    Parameters
-    ----------
-    status : int
-        The HTTP status.
-    reason : str
-        Message for the browser and the log: no secrets, no paths of the server.
-    """
+    """A request that is turned away."""
 
     def __init__(self, status: int, reason: str) -> None:
-        self.status = status
-        self.reason = reason
+        self.status = status  # the HTTP status
+        self.reason = reason  # message for the browser and the log: no secrets, no paths of the server
         super().__init__(reason)
 
 
 class Access:
-    """The checks of one server.
-
-    Parameters
-    ----------
-    options : Options
-        The token, the host and other origins.
-    secret : bytes
-        A key of this run of the server: cookies of an earlier run open nothing.
-    """
+    """The checks of one server."""
 
     def __init__(self, options: Options, secret: bytes) -> None:
         self._token = options.token
-        self._secret = secret
+        self._secret = secret  # A key of this run of the server: cookies of an earlier run open nothing
         self._loopback = options.on_loopback
         self._origins = {origin.rstrip("/").lower() for origin in options.origins}
 

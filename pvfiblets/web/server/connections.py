@@ -28,19 +28,13 @@ TURNED_AWAY = b"HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nRetry-A
 
 
 class Connections:
-    """The open connections of one server, oldest first.
-
-    Parameters
-    ----------
-    most, by_address : int
-        The most in all, and from one address (for IPv6, from one network of 64 bits).
-    proxies : iterable of str
-        Addresses of proxies. Their connections count in all only; the requests that they pass on count by the address
-        that the proxy put last into ``X-Forwarded-For``.
-    """
+    """The open connections of one server, oldest first."""
 
     def __init__(self, most: int, by_address: int, proxies: Iterable[str] = ()) -> None:
+        # the most in all, and from one address (for IPv6, from one network of 64 bits)
         self.most, self.by_address = most, by_address
+        # addresses of proxies. Their connections count in all only; the requests that they pass on count by the address
+        # that the proxy put last into `X-Forwarded-For`.
         self._proxies = {ip_address(proxy) for proxy in proxies}
         self._open: dict[Connection, str] = {}
         self._addresses: dict[str, dict[Connection, None]] = {}
@@ -122,17 +116,7 @@ class Connections:
 
 
 class Connection(web.RequestHandler):
-    """One connection, of aiohttp's server; it ends when no whole request has come in time.
-
-    Parameters
-    ----------
-    server : aiohttp.web.Server
-        What answers requests.
-    connections : Connections
-        Where it is counted.
-    patience : float
-        Seconds for the first request to come whole, and for each further one after the answer before it.
-    """
+    """One connection, of aiohttp's server; it ends when no whole request has come in time."""
 
     __slots__ = ("_address", "_begun", "_connections", "_patience", "asked", "busy")
 
@@ -140,7 +124,8 @@ class Connection(web.RequestHandler):
         # Bodies stay as they were sent: an upload that is inflated on its way would pass any limit.
         settings: dict[str, Any] = {"access_log": None, "auto_decompress": False, "lingering_time": LINGER}
         super().__init__(server, loop=asyncio.get_running_loop(), keepalive_timeout=patience, **settings)
-        self._connections, self._patience = connections, patience
+        # seconds for the first request to come whole, and for each further one after the answer before it
+        self._connections, self._patience = connections, patience  # where it is counted
         self._begun: asyncio.TimerHandle | None = None
         self._address = ""
         self.asked = False  # a whole request has come
@@ -197,11 +182,9 @@ class Connection(web.RequestHandler):
 
 
 def room(wanted: int, sessions: int) -> int:
-    """Return how many connections this process has file descriptors for, up to the number that is wanted.
-
-    The limit of this process is raised as far as that takes and the system allows. A connection may take two: one to
-    the browser, and one to its session.
-    """
+    """Return how many connections this process has file descriptors for, up to the number that is wanted."""
+    # The limit of this process is raised as far as that takes and the system allows. A connection may take two: one to
+    # the browser, and one to its session.
     try:
         import resource
     except ImportError:  # Windows has no such limit

@@ -33,26 +33,15 @@ WRONG_TOKEN = 1.0  # seconds that a wrong token waits for its answer
 # Methods of requests for pages and files of the application, and for its downloads.
 PASSED_ON = frozenset({"GET", "HEAD"})
 UPLOAD, SESSION = "/upload", "/session"
-DOWNLOAD = "/download/"
 LOGS = ("pvfiblets.web", "aiohttp.server", "asyncio")
 
 
 class FrontServer:
-    """The public server.
-
-    Parameters
-    ----------
-    options : Options
-        Checked options.
-    command : sequence of str, optional
-        What a session's process runs.
-    patience : float, optional
-        Seconds that a connection may take for a whole request.
-    """
+    """The public server."""
 
     def __init__(self, options: Options, command: Sequence[str] = WORKER, patience: float = PATIENCE) -> None:
-        self.options = options
-        self.patience = patience
+        self.options = options  # checked options
+        self.patience = patience  # seconds that a connection may take for a whole request
         self.connections = Connections(options.connections, options.by_address, options.proxies)
         self._quiet = LogLimiter()
         self._counting: asyncio.Task[None] | None = None
@@ -280,10 +269,8 @@ class FrontServer:
         return web.json_response(told, headers=HEADERS)
 
     def _first_page(self, request: web.Request) -> web.StreamResponse:
-        """Answer a browser that opens the page: with the application, or with why not yet or not at all.
-
-        Nothing is started: clients that only fetch pages run no script, and need no more than this page.
-        """
+        """Answer a browser that opens the page: with the application, or with why not yet or not at all."""
+        # Nothing is started: clients that only fetch pages run no script, and need no more than this page.
         session = self._session(request)
         if session is None and not self.launcher.has_room:
             self._log(request, "the limit of sessions")

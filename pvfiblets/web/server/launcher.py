@@ -28,7 +28,6 @@ from pvfiblets.web.server.options import Options
 logger = logging.getLogger("pvfiblets.web")
 
 GRACE = 5.0  # seconds that a process has to end by itself
-START = 600.0  # seconds to open the files it was started with
 RESCUED = 3600.0  # seconds that the session of a dead process can be restored
 MOST_RESCUED = 32
 MOST_WAITING = 1 << 16  # bytes sent to a process and not read yet
@@ -38,43 +37,23 @@ WORKER = (sys.executable, "-m", "pvfiblets.web.worker")
 
 @dataclass
 class Session:
-    """One scene and the process that holds it.
+    """One scene and the process that holds it."""
 
-    Attributes
-    ----------
-    id : str
-        What the browser's cookie says.
-    port : int or None
-        Where its process listens on loopback, once it does.
-    key : str
-        What every request to the process must carry, so that other users of this machine cannot make one.
-    failure : str or None
-        Why it ended, if it was not asked to.
-    connections : int
-        Browsers (or tabs) that are connected now.
-    folder : Path or None
-        Of its temporary files; it goes with the process.
-    short : str
-        What logs call it: nothing of the cookie.
-    doing : str
-        What its process opens now, for people; empty if nothing.
-    last_lines : deque of str
-        What its process wrote to standard error last.
-    """
-
-    id: str = field(repr=False)
+    id: str = field(repr=False)  # what the browser's cookie says
+    # what every request to the process must carry, so that other users of this machine cannot make one
     key: str = field(default_factory=lambda: secrets.token_hex(32), repr=False)
-    port: int | None = None
-    failure: str | None = None
-    connections: int = 0
-    short: str = field(default_factory=lambda: secrets.token_hex(3))
+    port: int | None = None  # where its process listens on loopback, once it does
+    failure: str | None = None  # why it ended, if it was not asked to
+    connections: int = 0  # browsers (or tabs) that are connected now
+    short: str = field(default_factory=lambda: secrets.token_hex(3))  # what logs call it: nothing of the cookie
     seen: float = field(default_factory=time.monotonic)
     process: asyncio.subprocess.Process | None = None
     tasks: list[asyncio.Task[None]] = field(default_factory=list)
     ready: asyncio.Event = field(default_factory=asyncio.Event)
     ended: bool = False
-    folder: Path | None = None
-    doing: str = ""
+    folder: Path | None = None  # of its temporary files; it goes with the process
+    doing: str = ""  # what its process opens now, for people; empty if nothing
+    # what its process wrote to standard error last
     last_lines: deque[str] = field(default_factory=lambda: deque(maxlen=50), repr=False)
 
 
@@ -88,22 +67,12 @@ class Rescued:
 
 
 class Launcher:
-    """Starts and ends the sessions of one server.
-
-    Parameters
-    ----------
-    options : Options
-        The limit, the timeout and what a session opens with.
-    on_end : callable
-        Called with a session that has ended, however it did.
-    command : sequence of str, optional
-        What a session's process runs.
-    """
+    """Starts and ends the sessions of one server."""
 
     def __init__(self, options: Options, on_end: Callable[[Session], None], command: Sequence[str] = WORKER) -> None:
-        self._options = options
-        self._on_end = on_end
-        self._command = tuple(command)
+        self._options = options  # the limit, the timeout and what a session opens with
+        self._on_end = on_end  # called with a session that has ended, however it did
+        self._command = tuple(command)  # what a session's process runs
         self.sessions: dict[str, Session] = {}
         self._failed: deque[Session] = deque(maxlen=32)
         self._rescued: dict[str, Rescued] = {}

@@ -20,22 +20,15 @@ class LogLimiter(logging.Filter):
     A kind is the logger, the level and the text before its arguments are put in; a record with the attribute ``about``
     (given by ``extra``) shares its kind only with records about the same, and ten times the limit are let through: they
     are a session's, and tracebacks are long.
-
-    Parameters
-    ----------
-    lines : int
-        The most records of a kind in one period.
-    seconds : float
-        How long a period is.
-    clock : callable
-        Returns the time in seconds.
     """
 
     def __init__(
         self, lines: int = LINES, seconds: float = PERIOD, clock: Callable[[], float] = time.monotonic
     ) -> None:
         super().__init__()
-        self.lines, self.seconds, self._clock = lines, seconds, clock
+        # returns the time in seconds
+        # how long a period is
+        self.lines, self.seconds, self._clock = lines, seconds, clock  # the most records of a kind in one period
         self._lock = threading.Lock()
         self._began = clock()
         self._counts: dict[_Kind, int] = {}

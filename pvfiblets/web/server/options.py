@@ -24,80 +24,37 @@ DRAW = ("auto", "here", "there")
 
 @dataclass(frozen=True)
 class Options:
-    """The settings of one server; :meth:`checked` lists their errors.
+    """The settings of one server; :meth:`checked` lists their errors."""
 
-    Parameters
-    ----------
-    files, volume, mesh : list of str
-        What a session opens with; they need not lie under `root`.
-    demo : bool
-        Open with a made-up tractogram.
-    host, port : str, int
-        Where to listen; port 0 lets the system choose.
-    root : str
-        The only folder that browsers may open files from and save to.
-    token : str or None
-        What a browser must present; ``None`` asks for nothing.
-    shared : bool
-        All browsers see and steer one session.
-    limit : int
-        The greatest number of sessions at once.
-    timeout : float
-        Seconds that a session without a browser is kept.
-    upload : int
-        The greatest size of an uploaded file, in bytes.
-    codec : str
-        How pictures travel: 'jpeg', 'png' or 'webp'.
-    draw : str
-        Who draws: 'here' this server, 'there' browsers where they can, 'auto' browsers with a graphics card.
-    look : str or None
-        That lines begin with, as of ``plotter.add_fiblets``.
-    antialias : str, int or None
-        As of ``plotter.picture``; None for the default.
-    cluster : str or None
-        Address of a dask scheduler, or path of its file, whose workers draw fiblets.
-    memory : int or None
-        Bytes that a session may have; ``None``: no limit.
-    origins : list of str
-        Other origins that pages may come from, such as that of a proxy which renames the host.
-    nifti_space, nifti_units : str
-        What places images of NIfTI, as of :func:`pvfiblets.nifti_space`.
-    tkras : bool
-        Whether surfaces of FreeSurfer stay in its surface space.
-    space : {"RAS", "LPS"} or None
-        Of points in VTK's files, of those above, that name none.
-    connections, by_address : int
-        The most connections at once, in all and from one address.
-    proxies : list of str
-        Addresses of trusted proxies: their forwarding headers name the client.
-    """
-
-    files: list[str] = field(default_factory=list)
+    files: list[str] = field(default_factory=list)  # what a session opens with; they need not lie under `root`
     volume: list[str] = field(default_factory=list)
     mesh: list[str] = field(default_factory=list)
-    demo: bool = False
-    host: str = "127.0.0.1"
+    demo: bool = False  # open with a made-up tractogram
+    host: str = "127.0.0.1"  # where to listen; port 0 lets the system choose
     port: int = 8080
-    root: str = "."
-    token: str | None = None
-    shared: bool = False
-    limit: int = 8
-    timeout: float = 300.0
-    upload: int = 2048 * MEBIBYTE
-    codec: str = "jpeg"
+    root: str = "."  # the only folder that browsers may open files from and save to
+    token: str | None = None  # what a browser must present; `None` asks for nothing
+    shared: bool = False  # all browsers see and steer one session
+    limit: int = 8  # the greatest number of sessions at once
+    timeout: float = 300.0  # seconds that a session without a browser is kept
+    upload: int = 2048 * MEBIBYTE  # the greatest size of an uploaded file, in bytes
+    codec: str = "jpeg"  # how pictures travel: 'jpeg', 'png' or 'webp'
+    # where pictures are drawn: 'here' on the server, 'there' in browsers that can, 'auto' if they have a graphics card
     draw: str = "auto"
-    look: str | None = None
-    antialias: str | int | None = None
-    cluster: str | None = None
-    memory: int | None = None
+    look: str | None = None  # that lines begin with, as of `plotter.add_fiblets`
+    antialias: str | int | None = None  # as of `plotter.picture`; None for the default
+    cluster: str | None = None  # address of a dask scheduler, or path of its file, whose workers draw fiblets
+    memory: int | None = None  # bytes that a session may have; `None`: no limit
+    # other origins that pages may come from, such as that of a proxy which renames the host
     origins: list[str] = field(default_factory=list)
-    connections: int = 1000
+    connections: int = 1000  # the most connections at once, in all and from one address
     by_address: int = 100
+    # addresses of trusted proxies: their forwarding headers name the client
     proxies: list[str] = field(default_factory=list)
-    nifti_space: Matrix | None = None
+    nifti_space: Matrix | None = None  # what places images of NIfTI, as of `pvfiblets.nifti_space`
     nifti_units: Units = "mm"
-    tkras: bool = False
-    space: Space | None = None
+    tkras: bool = False  # whether surfaces of FreeSurfer stay in its surface space
+    space: Space | None = None  # of points in VTK's files, of those above, that name none
 
     @property
     def on_loopback(self) -> bool:
@@ -161,11 +118,9 @@ class Options:
 
 
 def chosen_memory(text: str, sessions: int) -> int | None:
-    """Return the bytes that ``--max-memory auto|SIZE`` means, for each session; ``None`` where none can be set.
-
-    By default, sessions share four fifths of the machine's memory. Few are full at once, so that none has less than a
-    fifth of the machine: four full ones leave the server enough.
-    """
+    """Return the bytes that ``--max-memory auto|SIZE`` means, for each session; ``None`` where none can be set."""
+    # By default, sessions share four fifths of the machine's memory. Few are full at once, so that none has less than a
+    # fifth of the machine: four full ones leave the server enough.
     if text != "auto":
         try:
             return parse(text)

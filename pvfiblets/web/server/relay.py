@@ -24,16 +24,10 @@ SLOWEST = 1024  # bytes a second of an upload, over all of it
 
 
 class Relay:
-    """Passes on what browsers ask and what sessions answer.
-
-    Parameters
-    ----------
-    patience : float
-        Seconds that an upload may stop.
-    """
+    """Passes on what browsers ask and what sessions answer."""
 
     def __init__(self, patience: float) -> None:
-        self._patience = patience
+        self._patience = patience  # seconds that an upload may stop
         self._sockets: dict[str, set[web.WebSocketResponse]] = {}
         self._closing: set[asyncio.Task[object]] = set()
         self._client: aiohttp.ClientSession | None = None

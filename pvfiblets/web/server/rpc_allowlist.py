@@ -41,8 +41,7 @@ KEYS = frozenset({"keyPress", "keyDown", "keyUp", "KeyPress", "KeyDown", "KeyUp"
 LIFECYCLE = frozenset({"client_connected", "client_exited", "client_unmounted", "client_unmounting"})
 
 
-Check = Callable[..., list[Any] | None]
-"""Turns a message's arguments into a method's; ``None``: nothing to call."""
+Check = Callable[..., list[Any] | None]  # turns a message's arguments into a method's; `None`: nothing to call
 
 
 # What wrong input raises; anything else is a mistake in this program, and its traceback is for the log.
@@ -179,24 +178,14 @@ def guard_messages(handler: Any, complain: Callable[[str], None]) -> None:
 
 
 class AllowedCalls:
-    """Stands between wslink's messages and the called methods.
-
-    Parameters
-    ----------
-    writable : mapping of str to type
-        The keys of the state that a browser may set, and the type of each.
-    triggers : callable
-        Says whether a name is a trigger that the page uses.
-    complain : callable
-        Told of every refusal and every error, as one sentence for the user.
-    """
+    """Stands between wslink's messages and the called methods."""
 
     def __init__(
         self, writable: Mapping[str, type], triggers: Callable[[str], bool], complain: Callable[[str], None]
     ) -> None:
-        self._writable = writable
-        self._triggers = triggers
-        self._complain = complain
+        self._writable = writable  # the keys of the state that a browser may set, and the type of each
+        self._triggers = triggers  # says whether a name is a trigger that the page uses
+        self._complain = complain  # told of every refusal and every error, as one sentence for the user
 
     def guard(self, functions: dict[str, tuple[Any, Callable[..., Any]]]) -> None:
         """Replace a handler's table of methods by one of checked ones; others are gone."""

@@ -23,8 +23,7 @@ except ImportError:  # Windows, where folders of dead gates stay until its own c
 __all__ = ["PRIVATE", "Notes", "Scratch", "remove_abandoned"]
 
 PREFIX = "pvfiblets-serve-"
-PRIVATE = ".pvfiblets-"
-"""Prefix of names that sessions record: nothing else is ever removed."""
+PRIVATE = ".pvfiblets-"  # prefix of names that sessions record: nothing else is ever removed
 _LOCK, _NOTES = "lock", "notes"
 _SESSION, _RESTORE = "session.json", "restore.json"
 
@@ -65,13 +64,7 @@ class Scratch:
 
 
 class Notes:
-    """Unfinished files that a session writes outside of its folder.
-
-    Parameters
-    ----------
-    folder : Path, optional
-        The session's; without, nothing is noted.
-    """
+    """Unfinished files that a session writes outside of its folder."""
 
     def __init__(self, folder: Path | None) -> None:
         self._file = None if folder is None else folder / _NOTES
@@ -80,11 +73,9 @@ class Notes:
 
     @contextlib.contextmanager
     def private(self, beside: Path) -> Iterator[Path]:
-        """Give a hidden folder in another, which is gone afterwards, whatever happens.
-
-        If this process is killed before, files beside the folder that have a second name in it, the same one, go with
-        it. Where a file system has no hard links, they stay.
-        """
+        """Give a hidden folder in another, which is gone afterwards, whatever happens."""
+        # If this process is killed before, files beside the folder that have a second name in it, the same one, go with
+        # it. Where a file system has no hard links, they stay.
         found = Path(tempfile.mkdtemp(prefix=PRIVATE, dir=beside))
         self._open.append(found)
         self._write()

@@ -37,29 +37,16 @@ __all__ = [
     "volumes_of",
 ]
 
-KINDS = ("tractogram", "tubes", "volume", "mesh", "selection", "image")
-"""Kinds of layers."""
+KINDS = ("tractogram", "tubes", "volume", "mesh", "selection", "image")  # kinds of layers
 
-LINES = ("tractogram", "selection")
-"""Kinds that are drawn from fiblets: they can be filtered, cut and picked."""
+LINES = ("tractogram", "selection")  # kinds that are drawn from fiblets: they can be filtered, cut and picked
 
 
 @dataclass(frozen=True, eq=False)
 class Ids:
-    """Numbers of streamlines, each once and rising, as the runs that they are made of.
+    """Numbers of streamlines, each once and rising, as the runs that they are made of."""
 
-    Parameters
-    ----------
-    runs : array_like
-        ``(n, 2)`` int64: first number of each run, and the number behind its last.
-
-    Raises
-    ------
-    ValueError
-        If runs are empty, negative, or not rising.
-    """
-
-    runs: np.ndarray
+    runs: np.ndarray  # `(n, 2)` int64: first number of each run, and the number behind its last
 
     def __post_init__(self) -> None:
         runs = np.array(self.runs, np.int64).reshape(-1, 2)
@@ -104,31 +91,16 @@ class Ids:
 
 @dataclass(frozen=True)
 class Source:
-    """The source of data; one of ``path`` and ``demo``.
+    """The source of data; one of ``path`` and ``demo``."""
 
-    Attributes
-    ----------
-    path : str or None
-        A file: relative to the scene's root, with ``/``, or absolute.
-    demo : str or None
-        ``"tracts"`` or ``"head"``: made here (:mod:`pvfiblets.synthetic`).
-    size : int
-        Of a demo: streamlines, or voxels along a side.
-    ids : Ids or None
-        Only these streamlines of it.
-    values : tuple of str
-        Files with a number for each of its points or streamlines; these have the files' names. Of an image, the table
-        of its labels.
-    space : {"RAS", "LPS"} or None
-        Of its coordinates, if it is a file of VTK that names none.
-    """
-
-    path: str | None = None
-    demo: str | None = None
-    size: int = 0
-    ids: Ids | None = None
+    path: str | None = None  # A file: relative to the scene's root, with `/`, or absolute
+    demo: str | None = None  # `"tracts"` or `"head"`: made here (`pvfiblets.synthetic`)
+    size: int = 0  # of a demo: streamlines, or voxels along a side
+    ids: Ids | None = None  # only these streamlines of it
+    # files with a number for each of its points or streamlines; these have the files' names. Of an image, the table of
+    # its labels.
     values: tuple[str, ...] = ()
-    space: Space | None = None
+    space: Space | None = None  # of its coordinates, if it is a file of VTK that names none
 
     @property
     def bare(self) -> Source:
@@ -163,31 +135,19 @@ def volumes_of(settings: Mapping[str, Any]) -> dict[str, Source]:
 
 @dataclass(frozen=True)
 class Filters:
-    """The filters of a layer's streamlines; all of them together.
+    """The filters of a layer's streamlines; all of them together."""
 
-    Attributes
-    ----------
-    criteria : mapping of str to (float, float)
-        Least and greatest value that is shown, by the name of the values.
-    images : mapping of str to Source
-        Images whose values at the points criteria of these names compare.
-    groups : tuple of str or None
-        Those shown; ``None`` for all streamlines.
-    subset : mapping or None
-        ``{"amount": share or number, "seed": int}`` or ``{"every": n}``.
-    regions : mapping or None
-        An expression of :mod:`pvfiblets.web.session.shapes`: ``{"how": "passes", "region": {...}}``, joined by
-        ``{"op": "and" | "or" | "not", "of": [...]}``.
-    connection : mapping or None
-        ``{"labels": path, "pair": [label, label], "radius": mm}``: streamlines between two parcels of a label volume,
-        as :func:`pvfiblets.connectome` has it.
-    """
-
+    # least and greatest value that is shown, by the name of the values
     criteria: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    # images whose values at the points criteria of these names compare
     images: Mapping[str, Source] = field(default_factory=dict)
-    groups: tuple[str, ...] | None = None
-    subset: Mapping[str, Any] | None = None
+    groups: tuple[str, ...] | None = None  # those shown; `None` for all streamlines
+    subset: Mapping[str, Any] | None = None  # `{"amount": share or number, "seed": int}` or `{"every": n}`
+    # an expression of `pvfiblets.web.session.shapes`: `{"how": "passes", "region": {...}}`, joined by `{"op": "and" |
+    # "or" | "not", "of": [...]}`
     regions: Mapping[str, Any] | None = None
+    # `{"labels": path, "pair": [label, label], "radius": mm}`: streamlines between two parcels of a label volume, as
+    # `pvfiblets.connectome` has it
     connection: Mapping[str, Any] | None = None
 
     @property
@@ -199,34 +159,17 @@ class Filters:
 
 @dataclass(frozen=True)
 class Layer:
-    """Something that a scene shows.
+    """Something that a scene shows."""
 
-    Attributes
-    ----------
-    id : str
-        Stays the same as long as the layer is there.
-    kind : str
-        Of `KINDS`.
-    name : str
-        For people.
-    source : Source
-        Where its data comes from.
-    visible : bool
-    settings : mapping of str to JSON values
-        All settable properties (:mod:`pvfiblets.web.scene.layers`), defaults included.
-    filters : Filters
-    selected : Ids or None
-        Streamlines that are selected.
-    """
-
-    id: str
-    kind: str
-    name: str
-    source: Source
+    id: str  # stays the same as long as the layer is there
+    kind: str  # of `KINDS`
+    name: str  # for people
+    source: Source  # where its data comes from
     visible: bool = True
+    # all settable properties (`pvfiblets.web.scene.layers`), defaults included
     settings: Mapping[str, Any] = field(default_factory=dict)
     filters: Filters = field(default_factory=Filters)
-    selected: Ids | None = None
+    selected: Ids | None = None  # streamlines that are selected
 
     @property
     def path(self) -> str | None:
@@ -251,26 +194,15 @@ class Bundle:
 
 @dataclass(frozen=True)
 class Clip:
-    """A cut through layers.
-
-    Attributes
-    ----------
-    id, name : str
-    shape : mapping
-        Of :mod:`pvfiblets.web.session.shapes`, such as ``{"kind": "plane", "normal": [...], "origin": [...]}``.
-    inside : bool
-        Which side stays: of a plane, that which the normal points to.
-    enabled : bool
-    layers : tuple of str or None
-        Ids of cut layers; ``None`` for all layers of lines, later ones included.
-    """
+    """A cut through layers."""
 
     id: str
     name: str
+    # of `pvfiblets.web.session.shapes`, such as `{"kind": "plane", "normal": [...], "origin": [...]}`
     shape: Mapping[str, Any]
-    inside: bool = True
+    inside: bool = True  # which side stays: of a plane, that which the normal points to
     enabled: bool = True
-    layers: tuple[str, ...] | None = None
+    layers: tuple[str, ...] | None = None  # ids of cut layers; `None` for all layers of lines, later ones included
 
     def cuts(self, layer: Layer) -> bool:
         """Whether it cuts a layer."""
@@ -281,15 +213,9 @@ class Clip:
 
 @dataclass(frozen=True)
 class Measurement:
-    """A straight distance.
+    """A straight distance."""
 
-    Attributes
-    ----------
-    begin, end : tuple of 3 floats
-        Where it is measured, mm.
-    """
-
-    begin: tuple[float, float, float]
+    begin: tuple[float, float, float]  # where it is measured, mm
     end: tuple[float, float, float]
 
     @property
@@ -305,24 +231,12 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Matrix:
-    """A connectome: the connections of a label volume's parcels by a tractogram.
+    """A connectome: the connections of a label volume's parcels by a tractogram."""
 
-    Attributes
-    ----------
-    layer : str
-        Id of the tractogram.
-    labels : str
-        The volume's file.
-    names : str or None
-        A file with the labels' names.
-    weights, contrast, statistic, radius
-        As of :func:`pvfiblets.connectome`; weights and contrast are names of arrays.
-    """
-
-    layer: str
-    labels: str
-    names: str | None = None
-    weights: str | None = None
+    layer: str  # id of the tractogram
+    labels: str  # the volume's file
+    names: str | None = None  # A file with the labels' names
+    weights: str | None = None  # as of `pvfiblets.connectome`; weights and contrast are names of arrays
     contrast: str = "count"
     statistic: str | None = None
     radius: float = 4.0
@@ -330,33 +244,18 @@ class Matrix:
 
 @dataclass(frozen=True)
 class State:
-    """A scene's document.
-
-    Attributes
-    ----------
-    layers : tuple of Layer
-    clips : tuple of Clip
-    background : str
-        ``#rrggbb``.
-    measurements : tuple of Measurement
-    painting : Painting or None
-        Regions that are painted on slices.
-    bundles : tuple of (Source, tuple of Bundle)
-        Those of sources whose bundles were edited.
-    matrix : Matrix or None
-        That which is shown beside the picture.
-    oblique : tuple of 2 floats or None
-        Tilt and turn of the oblique slice, degrees.
-    """
+    """A scene's document."""
 
     layers: tuple[Layer, ...] = ()
     clips: tuple[Clip, ...] = ()
+    # `#rrggbb`
     background: str = "#000000"
     measurements: tuple[Measurement, ...] = ()
-    painting: Painting | None = None
+    painting: Painting | None = None  # regions that are painted on slices
+    # bundles of the sources whose bundles were edited
     bundles: tuple[tuple[Source, tuple[Bundle, ...]], ...] = ()
-    matrix: Matrix | None = None
-    oblique: tuple[float, float] | None = None
+    matrix: Matrix | None = None  # that which is shown beside the picture
+    oblique: tuple[float, float] | None = None  # tilt and turn of the oblique slice, degrees
 
     def bundles_of(self, source: Source) -> tuple[Bundle, ...] | None:
         """Return the bundles of a source, if they were edited; None for the groups of its file."""

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Change, Scene
     from pvfiblets.web.session.document import State
 
-__all__ = ["History"]
-
 
 @dataclass(frozen=True)
 class _Step:
@@ -30,35 +28,19 @@ class _Step:
 
 
 class History:
-    """Undo and redo for a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        Watched from now on.
-    limit : int, default: 100
-        Steps that are kept; the oldest go first.
-    together : float, default: 1.0
-        Seconds within which changes of one and the same thing, such as a slider makes, are one step.
-    clock : callable, optional
-        Returns the time in seconds; for tests.
-
-    Attributes
-    ----------
-    held : bool
-        A slider is held: its changes are one step, however long that takes.
-    """
+    """Undo and redo for a scene."""
 
     def __init__(
         self, scene: Scene, limit: int = 100, *, together: float = 1.0, clock: Callable[[], float] = time.monotonic
     ) -> None:
         if limit < 1:
             raise ValueError(f"limit is {limit}; give a number of steps from 1 on")
-        self._scene = scene
-        self._limit = limit
+        self._scene = scene  # watched from now on
+        self._limit = limit  # steps that are kept; the oldest go first
+        # seconds within which changes of one and the same thing, such as a slider makes, are one step
         self._together = together
-        self._clock = clock
-        self.held = False
+        self._clock = clock  # returns the time in seconds; for tests
+        self.held = False  # A slider is held: its changes are one step, however long that takes
         self._done: list[_Step] = []
         self._undone: list[_Step] = []
         self._present = scene.state

@@ -16,11 +16,6 @@ from pvfiblets.query.painting.painter import Stroke
 from pvfiblets.web.session.runs import numbers_in, pack, runs_of, unpack
 from pvfiblets.web.values import colour, mapping, numbers, shown, text, truth, whole
 
-__all__ = [
-    "LONGEST", "MOST_REGIONS", "MOST_VOXELS", "USES", "Painted", "Painting", "Strokes", "as_json", "check_painting",
-    "path_between",
-]  # fmt: skip
-
 USES = {
     "": "not used",
     "passes": "pass through",
@@ -63,19 +58,10 @@ class Strokes:
 
 @dataclass(frozen=True)
 class Painting:
-    """The painted regions of a scene, on the voxels of one image.
-
-    Attributes
-    ----------
-    shape : tuple of 3 ints
-    affine : tuple of 16 floats
-        Voxels to mm, row by row.
-    regions : tuple of Painted
-    strokes : Strokes or None
-    """
+    """The painted regions of a scene, on the voxels of one image."""
 
     shape: tuple[int, int, int]
-    affine: tuple[float, ...]
+    affine: tuple[float, ...]  # voxels to mm, row by row
     regions: tuple[Painted, ...] = ()
     strokes: Strokes | None = None
 

@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
     from pvfiblets.web.session.store import Store
 
-__all__ = ["VERSION", "Prepared", "read_session"]
-
 VERSION = 1
 _ID = re.compile(r"[a-z]+[0-9]{1,9}")
 
@@ -59,10 +57,8 @@ class Prepared:
 def read_session(
     scene: Scene, data: Any, folder: Path | None, progress: Progress | None, cancel: Cancel | None
 ) -> Prepared:
-    """Return the document and the camera of a session whose files are read and found to fit.
-
-    Parameters and errors as of :func:`.files.prepare`.
-    """
+    """Return the document and the camera of a session whose files are read and found to fit."""
+    # Parameters and errors as of `.files.prepare`.
     if not isinstance(data, Mapping):
         raise ValueError(f"it is {shown(data)} and no object")
     if data.get("program") != "pvfiblets":

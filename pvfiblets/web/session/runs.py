@@ -9,10 +9,7 @@ import numpy as np
 
 from pvfiblets.web.values import shown
 
-__all__ = ["numbers_in", "pack", "runs_of", "unpack"]
-
-_STEPS = {"u1": 1, "u2": 2, "u4": 4, "u8": 8}
-"""Types of steps, and their bytes; little-endian."""
+_STEPS = {"u1": 1, "u2": 2, "u4": 4, "u8": 8}  # types of steps, and their bytes; little-endian
 
 
 def runs_of(numbers: np.ndarray) -> np.ndarray:
@@ -31,11 +28,9 @@ def numbers_in(runs: np.ndarray) -> np.ndarray:
 
 
 def pack(runs: np.ndarray) -> str:
-    """Return runs as text, in the shorter of two forms.
-
-    ``bits:`` and, in base64, a bit for each number up to the last one, the lowest bit of a byte first; or ``u1:``,
-    ``u2:``, ``u4:`` or ``u8:`` and integers of so many bytes: the numbers between runs and in runs, in turns.
-    """
+    """Return runs as text, in the shorter of two forms."""
+    # `bits:` and, in base64, a bit for each number up to the last one, the lowest bit of a byte first; or `u1:`, `u2:`,
+    # `u4:` or `u8:` and integers of so many bytes: the numbers between runs and in runs, in turns.
     ends = np.asarray(runs, np.int64).reshape(-1)
     steps = np.diff(ends, prepend=0)
     kind = next(kind for kind, size in _STEPS.items() if int(steps.max(initial=0)) < 1 << 8 * size)

@@ -28,8 +28,6 @@ from pvfiblets.web.session.shapes import condition_code, mesh_code, planes_of, s
 if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
 
-__all__ = ["as_script"]
-
 _LABELS = '''
 def labels_of(path, labels):
     """Return the region of some labels of a volume."""

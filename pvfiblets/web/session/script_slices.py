@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
     from pvfiblets.web.session.document import Layer
 
-__all__ = ["bundle_lines", "has_images", "image_arguments", "painting_lines", "slicing_lines"]
-
 
 def has_images(scene: Scene) -> bool:
     """Return whether any layer is an image of slices."""

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
     from pvfiblets.web.session.document import Source
 
-__all__ = ["ScriptWriter", "ViewWriter", "free_variable", "names_in"]
-
 _WIDEST = 110
 _MOST_RUNS = 200  # of streamlines or voxels that a script lists one by one
 

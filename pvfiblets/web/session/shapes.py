@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     from pvfiblets.query.selection.predicates import Predicate
     from pvfiblets.regions import Region
 
-    Load = Callable[[Mapping[str, Any]], Any]
-    """From a shape of the kind ``"mesh"`` or ``"labels"`` to data."""
+    Load = Callable[[Mapping[str, Any]], Any]  # from a shape of the kind `"mesh"` or `"labels"` to data
 
 __all__ = [
     "CUTTING", "HOWS", "SAMPLED", "SHAPES", "check_condition", "check_shape", "condition_code", "make_predicate",
@@ -35,14 +34,12 @@ __all__ = [
 ]  # fmt: skip
 
 SHAPES = ("plane", "slab", "box", "sphere", "mesh", "labels")
-CUTTING = ("plane", "slab", "box", "sphere", "mesh")
-"""Shapes that can cut."""
+CUTTING = ("plane", "slab", "box", "sphere", "mesh")  # shapes that can cut
 
 HOWS = {"passes": "pass through", "ends_in": "end in", "both_ends_in": "have both ends in", "stays_in": "stay in"}
 """Relations of streamlines to a region."""
 
-SAMPLED = ("passes", "stays_in")
-"""Relations for which places between points count."""
+SAMPLED = ("passes", "stays_in")  # relations for which places between points count
 
 DEEPEST, MOST = 8, 32  # of a condition
 

@@ -14,8 +14,7 @@ from pvfiblets.web.session.document import LINES, Layer, Source, State
 
 __all__ = ["Store"]
 
-KEPT = 3
-"""Tables of the parcels in which streamlines end: eight bytes a streamline."""
+KEPT = 3  # tables of the parcels in which streamlines end: eight bytes a streamline
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,16 +27,10 @@ class _Ends:
 
 
 class Store:
-    """Data of a scene.
-
-    Parameters
-    ----------
-    files : Files
-        Where it is read from.
-    """
+    """Data of a scene."""
 
     def __init__(self, files: Files) -> None:
-        self.files = files
+        self.files = files  # where it is read from
         self.loaded: dict[tuple[str, Source], Loaded] = {}
         self.shapes: dict[tuple[str, Source], Any] = {}
         self.ends: list[_Ends] = []

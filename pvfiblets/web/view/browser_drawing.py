@@ -25,11 +25,9 @@ logger = logging.getLogger("pvfiblets.web")
 SOFTWARE = re.compile(r"swiftshader|llvmpipe|softpipe|software|basic render", re.IGNORECASE)
 """Names of graphics cards that are none: programs that draw on the processor, slower than the server's may be."""
 
-KEPT = 4
-"""Scenes whose data can be fetched: requests under way when the scene changes still succeed."""
+KEPT = 4  # scenes whose data can be fetched: requests under way when the scene changes still succeed
 
-PACKED = 1
-"""How hard zlib tries on pixels: a third of a slice's bytes are left after 12 ms; a quarter, by 6, after 110."""
+PACKED = 1  # how hard zlib tries on pixels: a third of a slice's bytes are left after 12 ms; a quarter, by 6, after 110
 
 
 class BrowserDrawing(Actions):

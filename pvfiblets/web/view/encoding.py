@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["encode"]
-
 
 def encode(pixels: NDArray[np.uint8], codec: str, quality: int) -> bytes:
     """Return a picture's bytes."""

@@ -18,24 +18,12 @@ ROOM = 0.6  # of the budget; a finer level is taken where it costs less than tha
 
 
 class Level(NamedTuple):
-    """The quality of a frame.
+    """The quality of a frame."""
 
-    Attributes
-    ----------
-    size : float
-        Share of the width and of the height that is drawn.
-    off : float
-        Error of lines in drawn pixels.
-    share : float
-        Of the streamlines of large sets.
-    cost : float
-        What is expected of it before it has drawn anything, if the finest takes 1.
-    """
-
-    size: float
-    off: float
-    share: float
-    cost: float
+    size: float  # share of the width and of the height that is drawn
+    off: float  # error of lines in drawn pixels
+    share: float  # of the streamlines of large sets
+    cost: float  # its expected cost before it has drawn anything, if the finest takes 1
 
 
 LEVELS = (
@@ -49,13 +37,7 @@ LEVELS = (
 
 
 class Pace:
-    """The level of the next frame.
-
-    Attributes
-    ----------
-    level : Level
-        That of the next frame of a moving camera.
-    """
+    """The level of the next frame."""
 
     def __init__(self) -> None:
         self._costs: dict[Level, float] = {}
@@ -63,7 +45,7 @@ class Pace:
         self._drawn: Level | None = None
         self._run: deque[float] = deque(maxlen=3)  # of that level, since another one drew
         self._scale = 0.0  # seconds for a cost of 1; nothing is slow before the first frame
-        self.level = LEVELS[0]
+        self.level = LEVELS[0]  # that of the next frame of a moving camera
 
     def took(self, level: Level, seconds: float, *, moved: bool = True) -> None:
         """Note how long a frame took to draw; where the camera has not moved since, it may take less than others do."""

@@ -20,14 +20,7 @@ _Floats = NDArray[np.float64]
 
 
 class Sight:
-    """The projection of a camera.
-
-    Parameters
-    ----------
-    camera : vtkCamera
-    width, height : int
-        Of the picture, pixels.
-    """
+    """The projection of a camera."""
 
     def __init__(self, camera: Any, width: int, height: int) -> None:
         matrix = camera.GetCompositeProjectionTransformMatrix(width / max(height, 1), -1.0, 1.0)

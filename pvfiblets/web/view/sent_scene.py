@@ -25,11 +25,9 @@ if TYPE_CHECKING:
 
 __all__ = ["LARGEST", "URL", "SentScene", "SentScenes"]
 
-LARGEST = 64_000_000
-"""Bytes of data up to which ``--draw auto`` lets browsers draw: pictures may never add up to more."""
+LARGEST = 64_000_000  # bytes of data up to which `--draw auto` lets browsers draw: pictures may never add up to more
 
-MOST = 1_000_000_000
-"""Bytes of data up to which ``--draw there`` does: browsers hold little more of one page's."""
+MOST = 1_000_000_000  # bytes of data up to which `--draw there` does: browsers hold little more of one page's
 
 URL = "/there"
 
@@ -39,21 +37,11 @@ _NAMED = re.compile(r"'([a-z]+[0-9]+)'")
 
 @dataclass(frozen=True)
 class SentScene:
-    """A scene that a browser can draw.
+    """A scene that a browser can draw."""
 
-    Attributes
-    ----------
-    content : dict
-        As ``client/src/scene.ts`` has it, but for the camera.
-    blobs : dict of str to bytes
-        Its data, by their names.
-    pixels : set of str
-        Names of slices' pixels, which are sent compressed.
-    """
-
-    content: dict[str, Any]
-    blobs: dict[str, bytes]
-    pixels: frozenset[str] = frozenset()
+    content: dict[str, Any]  # as `client/src/scene.ts` has it, but for the camera
+    blobs: dict[str, bytes]  # its data, by their names
+    pixels: frozenset[str] = frozenset()  # names of slices' pixels, which are sent compressed
 
     @property
     def bytes(self) -> int:
@@ -62,12 +50,7 @@ class SentScene:
 
 
 class SentScenes:
-    """Makes a scene into what browsers draw, again and again.
-
-    Parameters
-    ----------
-    scene : Scene
-    """
+    """Makes a scene into what browsers draw, again and again."""
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene

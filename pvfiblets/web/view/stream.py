@@ -49,39 +49,15 @@ SO_FAR = 0.5  # seconds between partial frames of a set whose parts are fetched
 
 
 class PictureStream:
-    """The view of a plotter as a sequence of pictures; an area of trame-rca.
-
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-        Off screen, with an interactor.
-    name : str
-        The area's name.
-    codec : {'jpeg', 'png', 'webp'}
-        How pictures travel. PNG has no quality: it is the same at rest and in motion.
-    moving, still : int
-        Quality while the camera moves and at rest, from 1 to 100.
-    pending : callable
-        The number of messages that the network has not taken yet.
-    failed : callable
-        Told of an error while drawing.
-    drawn : callable
-        Called after each frame.
-    elsewhere : callable
-        Asked before each frame: whether somebody else draws, so that no picture is needed.
-    left_out : callable
-        Then asked for the renderer that somebody else draws, while pictures are of all others; None for none.
-    pane_at : callable
-        From a pixel to the pane of slices that it is in, which two fingers move; None elsewhere.
-    """
+    """The view of a plotter as a sequence of pictures; an area of trame-rca."""
 
     def __init__(
         self,
-        plotter: Any,
-        name: str,
+        plotter: Any,  # off screen, with an interactor
+        name: str,  # the area's name
         *,
-        codec: str = "jpeg",
-        moving: int = 50,
+        codec: str = "jpeg",  # how pictures travel. PNG has no quality: it is the same at rest and in motion.
+        moving: int = 50,  # quality while the camera moves and at rest, from 1 to 100
         still: int = 92,
         pending: Callable[[], int] = lambda: 0,
         failed: Callable[[Exception], None] = lambda _: None,
@@ -101,15 +77,17 @@ class PictureStream:
         self.sent_bytes = 0
         self.times: deque[float] = deque(maxlen=30)  # seconds that each of the last frames took to draw
         self._plotter = plotter
-        self._pending = pending
-        self._failed = failed
+        self._pending = pending  # the number of messages that the network has not taken yet
+        self._failed = failed  # told of an error while drawing
         self._after = drawn
+        # asked before each frame: whether somebody else draws, so that no picture is needed
         self._elsewhere = elsewhere
         self.given_up = 0  # whole pictures that somebody acted before the end of
         self._drawn_ahead = 0.0  # seconds that pieces of the next frame have taken
         self._stale = False  # whether something has changed that was not drawn
         self._streamer: Any = None
         self._wanted = asyncio.Event()
+        # then asked for the renderer that somebody else draws, while pictures are of all others; None for none
         self._left_out = left_out
         self._moved = 0.0
         self._size = (300, 300)  # of the whole picture
@@ -246,11 +224,9 @@ class PictureStream:
         return encode(self._read(), "png", 100)
 
     def picture_of(self, width: int, height: int, *, transparent: bool = False) -> NDArray[np.uint8]:
-        """Return the view at any size, drawn now and finished.
-
-        Lines and letters are as large beside the picture's height as on the page. What is larger than that is drawn in
-        pieces: enlarged windows have wider lines, more dots to an inch have not.
-        """
+        """Return the view at any size, drawn now and finished."""
+        # Lines and letters are as large beside the picture's height as on the page. What is larger than that is drawn
+        # in pieces: enlarged windows have wider lines, more dots to an inch have not.
         pieces = max(-(-height // self._size[1]), -(-max(width, height) // LARGEST_WINDOW))
         size = -(-width // pieces), -(-height // pieces)
         window, interactor = self._plotter.render_window, self._plotter.iren.interactor
@@ -322,10 +298,8 @@ class PictureStream:
             await self._refine()
 
     async def _ahead(self) -> bool:
-        """Draw what takes longest of the whole picture in pieces; ``False`` as soon as somebody acts meanwhile.
-
-        Then the picture that is shown stays, and the next one comes as soon as if nothing had been drawn.
-        """
+        """Draw what takes longest of the whole picture in pieces; ``False`` as soon as somebody acts meanwhile."""
+        # Then the picture that is shown stays, and the next one comes as soon as if nothing had been drawn.
         if self._level is not LEVELS[0]:
             self._resize(LEVELS[0])
         moved = self._moved
@@ -349,10 +323,8 @@ class PictureStream:
         return True
 
     async def _refine(self) -> None:
-        """Draw the samples of the picture at rest and send it, unless something happens meanwhile.
-
-        While parts of a set are fetched, partial frames are sent now and then.
-        """
+        """Draw the samples of the picture at rest and send it, unless something happens meanwhile."""
+        # While parts of a set are fetched, partial frames are sent now and then.
         # No event is handled while a sample is drawn: slow samples wait for a pause of events.
         picture = self._plotter.picture
         heavy = self.times[-1] if self.times and self.times[-1] > HEAVY and not picture.fetching else 0.0
@@ -369,10 +341,8 @@ class PictureStream:
             await self._send(self._read(), self.still_quality)
 
     async def _practise(self) -> None:
-        """Draw an invisible frame of a moving camera, to compile its programs in advance.
-
-        Programs are compiled and a share of a large set is copied to the GPU before somebody drags, not meanwhile.
-        """
+        """Draw an invisible frame of a moving camera, to compile its programs in advance."""
+        # Programs are compiled and a share of a large set is copied to the GPU before somebody drags, not meanwhile.
         if self._wanted.is_set() or not self._pace.untried:
             return
         self._show(self._pace.level)

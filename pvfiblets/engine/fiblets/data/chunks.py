@@ -50,35 +50,21 @@ CHUNK_BLOCK = UniformStruct(
 
 
 CLUSTER = 64
-CLUSTER_BIAS, CLUSTER_STEP = 32768.0, 2.0
-"""Fiblets of a cluster (:mod:`.clusters`), and what its box counts in."""
+CLUSTER_BIAS, CLUSTER_STEP = 32768.0, 2.0  # fiblets of a cluster (`.clusters`), and what its box counts in
 
-CLUSTERED = 1 << 21
-"""Fiblets of a set that has clusters: fewer are tested one by one in as little time."""
+CLUSTERED = 1 << 21  # fiblets of a set that has clusters: fewer are tested one by one in as little time
 
 
 @dataclass(frozen=True)
 class ChunkPlan:
-    """Consecutive whole pages that fit into buffers together.
+    """Consecutive whole pages that fit into buffers together."""
 
-    Attributes
-    ----------
-    pages : tuple of int
-        First page and one past the last.
-    fiblets, codes, points : tuple of int
-        The same for fiblets, bytes of codes, and points, counted over the whole set.
-    sizes : dict of str to int
-        Bytes of each buffer that holds the records.
-    values : int
-        Bytes of the largest buffer that a per-point value may ask for.
-    """
-
-    pages: tuple[int, int]
-    fiblets: tuple[int, int]
+    pages: tuple[int, int]  # first page and one past the last
+    fiblets: tuple[int, int]  # the same for fiblets, bytes of codes, and points, counted over the whole set
     codes: tuple[int, int]
     points: tuple[int, int]
-    sizes: dict[str, int]
-    values: int
+    sizes: dict[str, int]  # bytes of each buffer that holds the records
+    values: int  # bytes of the largest buffer that a per-point value may ask for
 
     @property
     def nbytes(self) -> int:

@@ -17,8 +17,6 @@ from ...gl.bindings import FIBLET_DATA, PEELING, SAMPLED
 from ...gl.moderngl_extras import BufferTexture, GLExtras
 from .chunks import Chunk
 
-__all__ = ["SAMPLERS", "DataTextures", "set_data_samplers"]
-
 SAMPLERS = {
     "anchors": ("anchor_texels", "rg32ui"),
     "pages": ("page_texels", "rgba32ui"),
@@ -33,18 +31,11 @@ SAMPLERS = {
 
 
 class DataTextures:
-    """Buffer textures of one chunk, made when first bound.
-
-    Parameters
-    ----------
-    gl : GLExtras
-    chunk : Chunk
-        Buffers of per-point values may come and go.
-    """
+    """Buffer textures of one chunk, made when first bound."""
 
     def __init__(self, gl: GLExtras, chunk: Chunk) -> None:
         self._gl = gl
-        self._chunk = chunk
+        self._chunk = chunk  # buffers of per-point values may come and go
         self._textures: dict[str, tuple[moderngl.Buffer, BufferTexture]] = {}
         self._bound: dict[str, moderngl.Buffer] = {}
         self._binding: Callable[[], None] = _nothing

@@ -28,34 +28,20 @@ if TYPE_CHECKING:
 __all__ = ["MASK_BITS", "Filter", "FilterTextures"]
 
 
-MASK_BITS = 12
-"""A row of a mask holds two to the power of this many words of 32 bits; the sources know it, too."""
+MASK_BITS = 12  # A row of a mask holds two to the power of this many words of 32 bits; the sources know it, too
 
-AHEAD = 2
-"""Points of the next chunk that shaders of this one ask about."""
+AHEAD = 2  # points of the next chunk that shaders of this one ask about
 
 Words = npt.NDArray[np.uint32]
 
 
 @dataclass(frozen=True, eq=False)
 class Filter:
-    """Streamlines and points to draw. The arrays must not be changed afterwards.
+    """Streamlines and points to draw. The arrays must not be changed afterwards."""
 
-    Parameters
-    ----------
-    streamlines : numpy.ndarray, optional
-        ``(n_streamlines,)`` bool; all by default.
-    points : numpy.ndarray, optional
-        ``(n_words,)`` uint32, a bit for each point in the order of the coded points (streamline of rank
-        0 first), the lowest bit of a word first; ``32 * n_words >= n_points``. All by default.
-
-    Raises
-    ------
-    TypeError
-        If an array has another type.
-    """
-
-    streamlines: npt.NDArray[np.bool_] | None = None
+    streamlines: npt.NDArray[np.bool_] | None = None  # `(n_streamlines,)` bool; all by default
+    # `(n_words,)` uint32, a bit for each point in the order of the coded points (streamline of rank 0 first), the
+    # lowest bit of a word first; `32 * n_words >= n_points`. All by default.
     points: Words | None = None
 
     def __post_init__(self) -> None:
@@ -65,13 +51,7 @@ class Filter:
                 raise TypeError(f"{name} is {array.dtype} of shape {array.shape}; give one row of {np.dtype(dtype)}")
 
     def check(self, fiblets: FibletSet) -> None:
-        """Raise unless it is for such a set.
-
-        Raises
-        ------
-        ValueError
-            It has another number of streamlines, or too few points.
-        """
+        """Raise a ValueError if the set has another number of streamlines, or too few points."""
         if self.streamlines is not None and len(self.streamlines) != fiblets.n_streamlines:
             count = len(self.streamlines)
             raise ValueError(f"{count} streamlines are kept or not; the set has {fiblets.n_streamlines}")
@@ -82,14 +62,8 @@ class Filter:
 class FilterTextures:
     """A filter on the GPU.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    whole : FibletSet
-        What filters speak of.
-    drawn : FibletSet
-        What lies on the GPU: the same, or some of its streamlines (:mod:`pvfiblets.codec.restrict`).
-    chunks : sequence of Chunk
+    Filters speak of the set ``whole``; on the GPU lies ``drawn``, the same or some of its streamlines
+    (:mod:`pvfiblets.codec.restrict`).
     """
 
     def __init__(self, ctx: moderngl.Context, whole: FibletSet, drawn: FibletSet, chunks: Sequence[Chunk]) -> None:

@@ -49,20 +49,12 @@ def _rows(scratch: moderngl.Buffer, size: int) -> npt.NDArray[np.float32]:
 
 
 class ComputeMeasurer:
-    """Measures by a compute shader (OpenGL 4.3).
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    programs : Programs
-    max_groups : int
-        Work groups per axis of a dispatch.
-    """
+    """Measures by a compute shader (OpenGL 4.3)."""
 
     def __init__(self, ctx: moderngl.Context, programs: Programs, max_groups: int) -> None:
         self._ctx = ctx
         self._programs = programs
-        self._max_groups = max_groups
+        self._max_groups = max_groups  # work groups per axis of a dispatch
 
     def measure(self, chunk: Chunk, features: Sequence[str]) -> npt.NDArray[np.float32]:
         """See :meth:`Measurer.measure`."""
@@ -81,14 +73,7 @@ class ComputeMeasurer:
 
 
 class FeedbackMeasurer:
-    """Measures by transform feedback (OpenGL 3.3), with data from buffer textures.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    """
+    """Measures by transform feedback (OpenGL 3.3), with data from buffer textures."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx

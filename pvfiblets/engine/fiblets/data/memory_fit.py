@@ -36,16 +36,13 @@ if TYPE_CHECKING:
 
 __all__ = ["PICTURE", "RESERVE", "Fitted", "MemoryBudget", "free_memory"]
 
-PICTURE = 1920 * 1080
-"""Pixels of the picture that is reckoned with; larger ones live on the reserve."""
+PICTURE = 1920 * 1080  # pixels of the picture that is reckoned with; larger ones live on the reserve
 
 PICTURE_BYTES = 48 * PICTURE  # G-buffer 24; depth buffers, state kept between rounds, pyramid: 24 at most
 
-SHARED_BYTES = 20_000
-"""Bytes of the uniform blocks that all chunks share, with a reserve."""
+SHARED_BYTES = 20_000  # bytes of the uniform blocks that all chunks share, with a reserve
 
-RESERVE = 0.1
-"""Share of the free memory that a sample leaves free."""
+RESERVE = 0.1  # share of the free memory that a sample leaves free
 
 _ADVICE = "draw fewer streamlines, an even share of them by fit='sample', or all of them part by part by fit='stream'"
 
@@ -53,21 +50,11 @@ _ADVICE = "draw fewer streamlines, an even share of them by fit='sample', or all
 
 @dataclass(frozen=True)
 class Fitted:
-    """The drawn part of a set.
+    """The drawn part of a set."""
 
-    Attributes
-    ----------
-    fiblets : FibletSet
-        The set, or a part of it.
-    plans : list of ChunkPlan
-        Its chunks.
-    share : float
-        How many of the set's streamlines with points it has: 1.0 for all.
-    """
-
-    fiblets: FibletSet
-    plans: list[ChunkPlan]
-    share: float
+    fiblets: FibletSet  # the set, or a part of it
+    plans: list[ChunkPlan]  # its chunks
+    share: float  # how many of the set's streamlines with points it has: 1.0 for all
 
     def kept(self) -> FibletSet:
         """Return the set to keep once it is on the GPU: a part, without its codes."""
@@ -76,27 +63,13 @@ class Fitted:
 
 @dataclass(frozen=True)
 class MemoryBudget:
-    """Memory that a set may take; made by :meth:`of`.
+    """Memory that a set may take; made by :meth:`of`."""
 
-    Attributes
-    ----------
-    limits : Limits
-        Of the pipeline.
-    video : int or None
-        Bytes free for buffers and pictures, None where that cannot be known.
-    host : int or None
-        Bytes free for what stays in the machine's memory.
-    shared : bool
-        Whether both are the same memory.
-    largest : int or None
-        Bytes that all buffers together may have, if the caller limits them.
-    """
-
-    limits: Limits
-    video: int | None
-    host: int | None
-    shared: bool
-    largest: int | None = None
+    limits: Limits  # of the pipeline
+    video: int | None  # bytes free for buffers and pictures, None where that cannot be known
+    host: int | None  # bytes free for what stays in the machine's memory
+    shared: bool  # whether both are the same memory
+    largest: int | None = None  # bytes that all buffers together may have, if the caller limits them
 
     @classmethod
     def of(cls, ctx: moderngl.Context, gl: GLExtras, limits: Limits, largest: int | None) -> MemoryBudget:
@@ -165,10 +138,8 @@ class MemoryBudget:
 
     @property
     def room(self) -> int | None:
-        """Bytes that buffers may take beside a picture, :data:`RESERVE` less than are free; None if unknown.
-
-        Half of that where both are the same memory: parts stand in it twice.
-        """
+        """Bytes that buffers may take beside a picture, :data:`RESERVE` less than are free; None if unknown."""
+        # Half of that where both are the same memory: parts stand in it twice.
         rooms = [] if self.largest is None else [self.largest - SHARED_BYTES]
         if self.video is not None:
             free = (1.0 - RESERVE) * self.video - PICTURE_BYTES - SHARED_BYTES

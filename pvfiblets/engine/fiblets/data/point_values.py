@@ -47,29 +47,16 @@ _ROWS = 1 << 20  # colours made at a time
 
 
 class ValueSources:
-    """Keeps the buffers of the one active per-point value.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    measurer : Measurer
-    fiblets : FibletSet
-    chunks : sequence of Chunk
-        Gain and lose the buffers ``values`` and ``starts``.
-    prepare : callable
-        Called before fiblets are measured; binds nothing.
-    largest : int
-        Bytes of one buffer.
-    """
+    """Keeps the buffers of the one active per-point value."""
 
     def __init__(
         self,
         ctx: moderngl.Context,
         measurer: Measurer,
         fiblets: FibletSet,
-        chunks: Sequence[Chunk],
-        prepare: Callable[[], None],
-        largest: int,
+        chunks: Sequence[Chunk],  # gain and lose the buffers `values` and `starts`
+        prepare: Callable[[], None],  # called before fiblets are measured; binds nothing
+        largest: int,  # bytes of one buffer
     ) -> None:
         self._ctx = ctx
         self._prepare, self._largest = prepare, largest

@@ -50,8 +50,7 @@ SAMPLING_BLOCK = UniformStruct(
     Field("volume_per_unit", "float", "value per texel unit"),
     Field("volume_whole", "int", "1: values are whole numbers of units"),
 )
-LARGEST_WHOLE = 2**24
-"""Up to here float32 holds every whole number."""
+LARGEST_WHOLE = 2**24  # up to here float32 holds every whole number
 
 Array = npt.NDArray[np.float64]
 
@@ -61,30 +60,16 @@ class VolumeSource:
     """Numbers on a regular grid, as a per-point value (`FibletStyle.values`).
 
     Two sources are the same only if they are one object: make another one to have a changed array looked at again.
-
-    Parameters
-    ----------
-    values : numpy.ndarray
-        ``(i, j, k)`` of bool, integers or floats, none of the sides 0. Not copied, and not to be changed.
-    affine : array_like
-        ``(4, 4)`` float64: voxel indices (voxel centres lie at whole numbers) to the fiblets' coordinates in mm.
-    nearest : bool, optional
-        Whether a point takes the nearest voxel's value, as labels need it. By default integers and bool do, and floats
-        are interpolated.
-    name : str, default 'volume'
-        For people.
-
-    Raises
-    ------
-    ValueError
-        If the array is not of three axes, empty or not of numbers, holds integers that float32 cannot tell apart, or
-        the affine is not an invertible (4, 4) matrix.
     """
 
+    # `(i, j, k)` of bool, integers or floats, none of the sides 0. Not copied, and not to be changed.
     values: npt.NDArray[Any]
+    # `(4, 4)` float64: voxel indices (voxel centres lie at whole numbers) to the fiblets' coordinates in mm
     affine: Array
+    # whether a point takes the nearest voxel's value, as labels need it. By default integers and bool do, and floats
+    # are interpolated.
     nearest: bool | None = None
-    name: str = "volume"
+    name: str = "volume"  # for people
     voxels: Array = field(init=False, repr=False)  # (4, 4) mm to voxel indices
 
     def __post_init__(self) -> None:
@@ -179,18 +164,7 @@ def _less(values: npt.NDArray[Any], reference: float) -> npt.NDArray[np.float32]
 
 
 class VolumeTexture:
-    """One volume on the GPU, and where it lies in the picture's local coordinates.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    source : VolumeSource
-
-    Raises
-    ------
-    EngineError
-        If a side is longer than the driver's largest 3-D texture, or memory does not suffice.
-    """
+    """One volume on the GPU, and where it lies in the picture's local coordinates."""
 
     def __init__(self, ctx: moderngl.Context, source: VolumeSource) -> None:
         self.source = source

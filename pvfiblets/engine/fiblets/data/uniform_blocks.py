@@ -56,18 +56,7 @@ def decoding_features(fiblets: FibletSet, chunks: list[Chunk]) -> list[str]:
 
 
 class SharedBlocks(BlockBuffers):
-    """The blocks of one set.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    fiblets : FibletSet
-
-    Attributes
-    ----------
-    buffers : dict of str to moderngl.Buffer
-        ``rotations``, ``coding``, ``frame``, and ``tubes`` and ``clip_planes`` while there are any.
-    """
+    """The blocks of one set."""
 
     def __init__(self, ctx: moderngl.Context, fiblets: FibletSet) -> None:
         super().__init__(ctx)

@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SLICE_BYTES", "Show", "fill_buffer", "release_chunks", "rows_of", "upload_chunk", "upload_fitting"]
 
-SLICE_BYTES = 1 << 24
-"""Bytes that are copied at a time."""
+SLICE_BYTES = 1 << 24  # bytes that are copied at a time
 
 Show = Callable[[int], object]
 Array = npt.NDArray[Any]

@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from ..pipelines import DrawRequest, Pipeline
     from ..style import FibletStyle
 
-__all__ = ["MOST_LAYERS", "LayeredBuffer", "Layers", "Peel"]
-
 MOST_LAYERS = 64
 
 
@@ -40,28 +38,7 @@ MOST_LAYERS = 64
 class LayeredBuffer:
     """Layers of a picture: texture arrays with the content of the G-buffer's textures, layer 0 the nearest.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    target : GBuffer
-        Of the same size and kind as the layers to be kept.
-    count : int
-        Layers.
-
-    Raises
-    ------
-    EngineError
-        If memory does not suffice.
-
-    Attributes
-    ----------
-    size : tuple of int
-    count : int
-    depth, ids, position : moderngl.TextureArray
-        See :mod:`pvfiblets.engine.gbuffer`. A layer is empty where those before it left nothing.
-    across : moderngl.TextureArray or None
-        If the G-buffer has it.
+    A layer is empty where those before it left nothing.
     """
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, target: GBuffer, count: int) -> None:
@@ -69,7 +46,7 @@ class LayeredBuffer:
         self.relief = target.relief
         self.nbytes = 0
         self._things: list[Any] = []
-        self.across: moderngl.TextureArray | None = None
+        self.across: moderngl.TextureArray | None = None  # if the G-buffer has it
         try:
             self.depth = self._array(ctx, 1, "u4")
             self.ids = self._array(ctx, 2, "u4")
@@ -124,17 +101,10 @@ class LayeredBuffer:
 
 @dataclass(frozen=True)
 class Peel:
-    """The layers in front of a picture.
-
-    Attributes
-    ----------
-    layers : LayeredBuffer
-    drawn : int
-        How many of them there are so far.
-    """
+    """The layers in front of a picture."""
 
     layers: LayeredBuffer
-    drawn: int
+    drawn: int  # how many of them there are so far
 
     def bind(self, program: Any) -> None:
         """Bind the layers, and tell a program how many count."""
@@ -190,23 +160,14 @@ class _Stage:
 
 
 class Layers:
-    """Draws layers behind a picture and keeps them.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    make : callable
-        Makes a pipeline and its culling, if it has any.
-    """
+    """Draws layers behind a picture and keeps them."""
 
     def __init__(
         self,
         ctx: moderngl.Context,
         gl: GLExtras,
         programs: Programs,
-        make: Callable[[], tuple[Pipeline, Occlusion | None]],
+        make: Callable[[], tuple[Pipeline, Occlusion | None]],  # makes a pipeline and its culling, if it has any
     ) -> None:
         self._ctx = ctx
         self._gl = gl

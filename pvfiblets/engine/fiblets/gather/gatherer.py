@@ -22,20 +22,9 @@ if TYPE_CHECKING:
     from ...gl.shaders import Programs
     from ..pipelines import DrawRequest, Pipeline
 
-__all__ = ["Gatherer"]
-
 
 class Gatherer:
-    """Adds up what all lines show, and keeps it until something changes.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    make : callable
-        Makes a pipeline, which keeps its own record of fiblets. What only puts parts together needs none.
-    """
+    """Adds up what all lines show, and keeps it until something changes."""
 
     def __init__(
         self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, make: Callable[[], Pipeline] | None = None

@@ -40,11 +40,9 @@ if TYPE_CHECKING:
 
 __all__ = ["SLICES", "Gather", "Gathered", "SliceDistances", "slice_edges"]
 
-SLICES = 4
-"""Sums of a pixel behind its nearest line; the shaders' three edges between them must agree."""
+SLICES = 4  # sums of a pixel behind its nearest line; the shaders' three edges between them must agree
 
-GROWTH = 2.5
-"""Ratio of each slice's depth to the depth of the one before."""
+GROWTH = 2.5  # ratio of each slice's depth to the depth of the one before
 
 Array = npt.NDArray[np.float64]
 
@@ -57,30 +55,14 @@ def slice_edges() -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class SliceDistances:
-    """The distance along the view as a function of depth: ``(p + q c) / (r + s c)``, with c = 1 - window depth.
+    """The distance along the view as a function of depth: ``(p + q c) / (r + s c)``, with c = 1 - window depth."""
 
-    Attributes
-    ----------
-    terms : tuple of 4 floats
-        p, q, r, s.
-    far : float
-        Distance of the far end of the data.
-    """
-
-    terms: tuple[float, float, float, float]
-    far: float
+    terms: tuple[float, float, float, float]  # p, q, r, s
+    far: float  # distance of the far end of the data
 
     @classmethod
     def from_box(cls, view: View, low: npt.ArrayLike, high: npt.ArrayLike) -> SliceDistances:
-        """Find them for a view of data in a box.
-
-        Parameters
-        ----------
-        view : View
-            Perspective or parallel: its third and its fourth row run the same way, or the fourth is constant.
-        low, high : array_like
-            (3,) data mm, its least and its greatest corner. What lies farther counts as lying at its far end.
-        """
+        """Return them for a view of data between two corners in mm: farther points count as at the far end."""
         matrix = np.asarray(view.model_view_projection, np.float64)
         box = np.stack([np.asarray(low, np.float64), np.asarray(high, np.float64)], 1)
         corners = np.array([[box[0, i], box[1, j], box[2, k], 1.0] for i, j, k in np.ndindex(2, 2, 2)])
@@ -98,46 +80,23 @@ class SliceDistances:
 class Gathered:
     """The sums of a picture.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    size : tuple of int
-    slices : int
-        Sums of a pixel.
-    painted : bool
-        Whether there are colours beside numbers.
-    words : bool
-        Words of 32 bits: of each pixel red, green, blue and weight, or the weight alone. Else float32 with these in its
-        channels. A slice has a layer.
-
-    Raises
-    ------
-    GPUMemoryError
-        If memory does not suffice.
-
-    Attributes
-    ----------
-    texture : moderngl.TextureArray
-        Of words with colours four times as wide as the picture, or twice as wide and high, where that is too much.
-    shape : tuple of int
-        Columns and rows of a pixel's words.
-    framebuffer : moderngl.Framebuffer
-        Of its layers.
-    keys : moderngl.Texture or None
-        rgba32ui, if there are several slices: depth keys of the nearest line, and of where each slice but the first
-        begins.
+    Their texture has a layer for each slice. ``words`` are of 32 bits: of each pixel red, green, blue and weight, or
+    the weight alone; else it is of float32 with these in its channels. Of words with colours it is four times as wide
+    as the picture, or twice as wide and high, where that is too much.
     """
 
     def __init__(
         self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int], slices: int, painted: bool, words: bool
     ) -> None:
+        # slices: sums of a pixel; painted: colours beside numbers
         self.size, self.slices, self.painted, self.words = size, slices, painted, words
-        self.shape = (1, 1)
+        self.shape = (1, 1)  # columns and rows of a pixel's words
         if words and painted:
             self.shape = (4, 1) if 4 * size[0] <= int(ctx.info["GL_MAX_TEXTURE_SIZE"]) else (2, 2)
         channels = 1 if words else 4
         self.nbytes = 4 * math.prod(size) * slices * math.prod(self.shape) * channels
+        # rgba32ui, if there are several slices: depth keys of the nearest line, and of where each slice but the first
+        # begins
         self.keys: moderngl.Texture | None = None
         self._key_target: moderngl.Framebuffer | None = None
         held: list[Any] = []
@@ -220,25 +179,14 @@ class Gathered:
 
 @dataclass(frozen=True)
 class Gather:
-    """Parameters of a pipeline's sums.
-
-    Attributes
-    ----------
-    target : Gathered
-    paint : Paint
-    nearest : GBuffer
-        The picture, which slices begin behind.
-    outside : moderngl.Texture, optional
-        Depth keys of what hides lines, r32ui of the picture's size.
-    own : GBuffer, optional
-        Picture of the part that adds its lines to sums of all: whose fiblets its ``owner`` numbers. The sums do not
-        begin at 0 then.
-    """
+    """Parameters of a pipeline's sums."""
 
     target: Gathered
     paint: Paint
-    nearest: GBuffer
-    outside: moderngl.Texture | None = None
+    nearest: GBuffer  # the picture, which slices begin behind
+    outside: moderngl.Texture | None = None  # depth keys of what hides lines, r32ui of the picture's size
+    # picture of the part that adds its lines to sums of all: whose fiblets its `owner` numbers. The sums do not begin
+    # at 0 then.
     own: GBuffer | None = None
 
     @property

@@ -24,17 +24,9 @@ if TYPE_CHECKING:
     from .gathering import Gathered, SliceDistances
     from .paint import Paint
 
-__all__ = ["LinesBehind"]
-
 
 class LinesBehind(FibletDrawable):
-    """Layers and sums of lines behind the nearest. Textures and programs are made when first needed.
-
-    Parameters
-    ----------
-    ctx, constants, lender
-        As of `Drawable`.
-    """
+    """Layers and sums of lines behind the nearest. Textures and programs are made when first needed."""
 
     _shared: SharedBlocks
 
@@ -57,28 +49,7 @@ class LinesBehind(FibletDrawable):
         """Make what draws one layer."""
 
     def render_layers(self, view: View, style: FibletStyle | None = None, count: int = 4) -> LayeredBuffer:
-        """Draw the lines behind the nearest too; a repeated call with this view and style costs nothing.
-
-        Parameters
-        ----------
-        view : View
-        style : FibletStyle, optional
-        count : int
-            Layers, the picture of :meth:`render` included.
-
-        Returns
-        -------
-        LayeredBuffer
-            The renderer's own (:mod:`pvfiblets.engine.fiblets.gather.depth_peeling`); the same object until the size
-            changes.
-
-        Raises
-        ------
-        EngineError
-            As :meth:`render`.
-        ValueError
-            If the number of layers is not from 2 to 64.
-        """
+        """Draw ``count`` layers, the nearest lines included; a repeated call with this view and style costs nothing."""
         style = style or FibletStyle()
         nearest = self.render(view, style)
         if self._layers is None:
@@ -101,32 +72,10 @@ class LinesBehind(FibletDrawable):
         outside: Callable[[], moderngl.Texture | None] | None = None,
         state: Any = None,
     ) -> Gathered:
-        """Add up what all lines show in each pixel; nothing is done that has been done for this picture.
-
-        Parameters
-        ----------
-        view : View
-        style : FibletStyle, optional
-        paint : Paint, optional
-            Their colours. Without, lines are counted.
-        sliced : bool
-            Whether the nearest line is left out and the others are parted by how far behind it they are.
-        outside : callable, optional
-            Returns depth keys of other things in the scene, r32ui of the view's size, or None; called if something is
-            to be done. Lines behind it are left out.
-        state : object
-            Another one where that depth may be another.
-
-        Returns
-        -------
-        Gathered
-            The renderer's own (:mod:`pvfiblets.engine.fiblets.gather.gathering`).
-
-        Raises
-        ------
-        EngineError
-            As :meth:`render`.
-        """
+        """Add up what all lines show in each pixel; nothing is done that has been done for this picture."""
+        # Without `paint`, lines are counted. `sliced` leaves the nearest line out, and parts the others by how far
+        # behind it they are. `outside` returns depth keys of other things in the scene, r32ui of the view's size: lines
+        # behind those are left out. `state` is another object where that depth may be another.
         from .gathering import SLICES
         from .paint import Paint
 
@@ -164,19 +113,9 @@ class LinesBehind(FibletDrawable):
         nearest: GBuffer,
         hides: moderngl.Texture | None,
     ) -> None:
-        """Add all lines of this part to the sums of its set.
-
-        Parameters
-        ----------
-        held : Gathered
-        view, style, paint
-            As of :meth:`gather`.
-        nearest : GBuffer
-            The picture of all parts. Where there are slices, a line of the part's own picture that is as near is left
-            out.
-        hides : moderngl.Texture, optional
-            Depth keys of what hides lines.
-        """
+        """Add all lines of this part to the sums of its set, ``held``."""
+        # `nearest` is the picture of all parts: where there are slices, a line of this part that is as near is left
+        # out.
         picture = self.render(view, style) if held.slices > 1 else nearest
         gatherer = self._with_gatherer()
         with self._noting():
@@ -191,13 +130,8 @@ class LinesBehind(FibletDrawable):
         return self._gatherer
 
     def most_lines(self, *, wait: bool = True) -> float:
-        """Return the greatest weight of a pixel in what :meth:`gather` made last: lines, where it was not sliced.
-
-        Parameters
-        ----------
-        wait : bool
-            Whether to wait for the GPU; if not, it may be that of some pictures earlier.
-        """
+        """Return the greatest weight of a pixel in what :meth:`gather` made last: lines, where it was not sliced."""
+        # Without `wait`, it may be that of some pictures earlier.
         if self._gatherer is None:
             return 0.0
         with self._noting():
@@ -221,20 +155,7 @@ class LinesBehind(FibletDrawable):
         self._features_behind = frozenset()
 
     def explain(self, *, counts: bool = True) -> dict[str, Any]:
-        """Return the work of the last redraw, and wait for it to end.
-
-        Parameters
-        ----------
-        counts : bool
-            Whether to count fiblets, which takes a pass over all of them and reads the picture back.
-
-        Returns
-        -------
-        dict
-            As :meth:`.Drawable.explain`, the features of layers included; ``fiblets_total``, ``share``; ``fiblets``:
-            ``total``, ``in_frustum``, ``drawn`` and ``visible`` (:mod:`pvfiblets.engine.fiblets.census`), None where
-            not known.
-        """
+        """Return what :meth:`.Drawable.explain` does, and ``fiblets`` as the census counts them; None: not known."""
         return super().explain(counts=counts) | {"features": sorted(self._features | self._features_behind)}
 
     def release(self) -> None:

@@ -18,39 +18,20 @@ MOST_OPAQUE = 0.999
 
 @dataclass(frozen=True)
 class Paint:
-    """The contribution of a line to its pixels, beside its count.
+    """The contribution of a line to its pixels, beside its count."""
 
-    Parameters
-    ----------
-    mode : str
-        One of `pvfiblets.colour_modes.MODES`; ``''``: no colour.
-    textures : mapping of str to moderngl.Texture
-        Those of ``shaders/colour`` by their samplers: ``colour_list`` or ``colour_table``.
-    uniforms : mapping of str to numbers
-        Those of ``shaders/colour``.
-    logarithm : bool
-        Whether the table is spread over logarithms.
-    light : tuple of 3 floats, optional
-        Unit vector, data coordinates, to a light that dims lines which run towards it. None: colours as they are.
-    opacity : float, optional
-        Of the whole drawable, where colours have opacities of their own; None where all lines have the same.
-    opacities : moderngl.Texture, optional
-        RGBA of 8 bits, row by row: alphas are the streamlines' opacities; with ``opacity``.
-    value_opacity : bool
-        Whether the style's per-point value is an opacity; with ``opacity``.
-    version : object
-        Another one if the content of textures is another.
-    """
-
-    mode: str = ""
+    mode: str = ""  # one of `pvfiblets.colour_modes.MODES`; `''`: no colour
+    # textures of `shaders/colour` by their samplers: `colour_list` or `colour_table`
     textures: Mapping[str, Any] = field(default_factory=dict)
-    uniforms: Mapping[str, Any] = field(default_factory=dict)
-    logarithm: bool = False
+    uniforms: Mapping[str, Any] = field(default_factory=dict)  # uniforms of `shaders/colour`
+    logarithm: bool = False  # whether the table is spread over logarithms
+    # unit vector, data coordinates, to a light that dims lines which run towards it. None: colours as they are.
     light: tuple[float, ...] | None = None
+    # of the whole drawable, where colours have opacities of their own; None where all lines have the same
     opacity: float | None = None
-    opacities: Any = None
-    value_opacity: bool = False
-    version: Any = None
+    opacities: Any = None  # RGBA of 8 bits, row by row: alphas are the streamlines' opacities; with `opacity`
+    value_opacity: bool = False  # whether the style's per-point value is an opacity; with `opacity`
+    version: Any = None  # another one if the content of textures is another
 
     @property
     def features(self) -> tuple[str, ...]:

@@ -51,43 +51,18 @@ GRACE = 10.0  # seconds in which a cluster without workers may get some: those t
 
 
 class ClusterRenderer(NearestOnly):
-    """Draws a set by workers.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Of this process; the workers make their own.
-    fiblets : FibletSet
-        Mapped from a file, or in shards in a folder, that all workers see under the same name, or in shards at an
-        address: they read it themselves. Of one in memory each worker is sent its part.
-    cluster : distributed.Client or str
-        Or the address of its scheduler, or the path of the scheduler's file.
-    count : int, optional
-        Parts; by default as many as there are workers now.
-    pipeline : str
-        Of the workers.
-
-    Attributes
-    ----------
-    share : float
-        How many of the parts the last picture shows.
-
-    Raises
-    ------
-    EngineError
-        If there are no workers.
-    TypeError
-        If the cluster is something else.
-    """
+    """Draws a set by workers."""
 
     def __init__(
         self,
-        ctx: moderngl.Context,
+        ctx: moderngl.Context,  # of this process; the workers make their own
+        # mapped from a file, or in shards in a folder, that all workers see under the same name, or in shards at an
+        # address: they read it themselves. Of one in memory each worker is sent its part.
         fiblets: FibletSet,
-        cluster: Any,
+        cluster: Any,  # or the address of its scheduler, or the path of the scheduler's file
         *,
-        count: int | None = None,
-        pipeline: str = AUTO,
+        count: int | None = None,  # parts; by default as many as there are workers now
+        pipeline: str = AUTO,  # of the workers
     ) -> None:
         check_choices(pipeline=pipeline)
         super().__init__(ctx, CONSTANTS)

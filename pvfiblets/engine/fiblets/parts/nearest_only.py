@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ..data.filter_textures import Filter
     from ..style import FibletStyle
 
-__all__ = ["NearestOnly"]
-
 _NO_LAYERS = (
     "a set that is drawn part by part has no layers of lines, which need all of it at once; let lines be added up "
     "(transparency='all'), draw a share of it by fit='sample', or fewer streamlines"
@@ -29,17 +27,10 @@ _NO_SUMS = (
 
 
 class NearestOnly(FibletDrawable):
-    """Draws a set of fiblets in parts.
+    """Draws a set of fiblets in parts."""
 
-    Attributes
-    ----------
-    hurried : bool
-        Whether pictures show the available data at once.
-    patience : float or None
-        Seconds after which a picture is given back as it is; None for complete pictures only.
-    """
-
-    hurried = False
+    hurried = False  # whether pictures show the available data at once
+    # seconds after which a picture is given back as it is; None for complete pictures only
     patience: float | None = None
     _filter: Filter | None = None
 

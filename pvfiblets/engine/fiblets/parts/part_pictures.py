@@ -39,14 +39,7 @@ class PictureTarget:
 
 
 class PartPictures:
-    """Puts pictures of parts together.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    """
+    """Puts pictures of parts together."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx

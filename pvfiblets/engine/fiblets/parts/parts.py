@@ -19,18 +19,15 @@ if TYPE_CHECKING:
 
 __all__ = ["Parts", "Stretches", "in_view", "reach_of"]
 
-Box = npt.NDArray[np.float64]
-"""``(2, 3)`` float64: least and greatest coordinates, mm."""
+Box = npt.NDArray[np.float64]  # `(2, 3)` float64: least and greatest coordinates, mm
 
 
 class Parts(Protocol):
     """The parts of a set. Each streamline is in one part, as a whole, with its number in the set."""
 
-    whole: FibletSet
-    """The set: what filters and colours go by."""
+    whole: FibletSet  # the set: what filters and colours go by
 
-    by_streamline: bool
-    """Whether the set is coded in the order of its streamlines' numbers, but not part by part."""
+    by_streamline: bool  # whether the set is coded in the order of its streamlines' numbers, but not part by part
 
     def __len__(self) -> int:
         """Return how many parts there are."""
@@ -62,23 +59,14 @@ class Parts(Protocol):
 
 
 class Stretches:
-    """Parts of a set in memory or mapped: stretches of streamlines that are coded one after another.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    gpu_bytes : int
-        GPU memory that all of it would take.
-    part_bytes : int
-        What a part may take, about.
-    """
+    """Parts of a set in memory or mapped: stretches of streamlines that are coded one after another."""
 
     by_streamline = False
 
     def __init__(self, fiblets: FibletSet, gpu_bytes: int, part_bytes: int) -> None:
         self.whole = fiblets
         self._share = min(part_bytes / max(gpu_bytes, 1), 1.0)
-        self._gpu_bytes = gpu_bytes
+        self._gpu_bytes = gpu_bytes  # GPU memory that all of it would take
 
     @classmethod
     def of_count(cls, fiblets: FibletSet, count: int) -> Stretches:
@@ -132,10 +120,8 @@ def _numbered(part: FibletSet, ids: npt.NDArray[np.int64]) -> FibletSet:
 
 
 def reach_of(part: FibletSet) -> Box | None:
-    """Return bounds of all points of a set, from its anchors; None if it has none.
-
-    Each fiblet lies in a sphere of the set's largest radius that its anchor lies in too.
-    """
+    """Return bounds of all points of a set, from its anchors; None if it has none."""
+    # Each fiblet lies in a sphere of the set's largest radius that its anchor lies in too.
     if not part.n_fiblets:
         return None
     words, low = np.asarray(part.anchors), part.anchors_low

@@ -29,14 +29,7 @@ FETCHED_AT_ONCE = 2  # connections; a third would take bandwidth from the parts 
 
 
 class ShardParts:
-    """Parts of a set in shards.
-
-    Parameters
-    ----------
-    fiblets : UnreadSet
-    part_bytes : int
-        What a part may take of the GPU's memory, about.
-    """
+    """Parts of a set in shards."""
 
     by_streamline = False
 
@@ -134,14 +127,7 @@ def parts_of(fiblets: FibletSet, gpu_bytes: int, part_bytes: int) -> Parts:
 
 
 class ShardGroups:
-    """Shards of a set in runs of about the same number of fiblets, for workers that read them themselves.
-
-    Parameters
-    ----------
-    fiblets : UnreadSet
-    count : int
-        Groups that are wanted; there are no more than shards.
-    """
+    """Shards of a set in runs of about the same number of fiblets, for workers that read them themselves."""
 
     def __init__(self, fiblets: UnreadSet, count: int) -> None:
         self._set = fiblets

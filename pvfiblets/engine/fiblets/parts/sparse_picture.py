@@ -22,48 +22,25 @@ _KINDS = {"u": "<u4", "f": "<f4"}
 
 @dataclass(frozen=True)
 class Cost:
-    """The cost of one step towards a picture.
-
-    Attributes
-    ----------
-    step : {'draw', 'merge'}
-    seconds : float
-    bytes : int
-        Of the picture that came of it.
-    """
+    """The cost of one step towards a picture."""
 
     step: str
     seconds: float
-    bytes: int
+    bytes: int  # of the picture that came of it
 
 
 @dataclass(frozen=True)
 class SparsePicture:
-    """Pixels of a picture.
+    """Pixels of a picture."""
 
-    Attributes
-    ----------
-    size : tuple of int
-        Width and height of all of it.
-    order : int
-        Of the part that it shows, the lowest where it shows several.
-    pixels : numpy.ndarray
-        ``(n,)`` uint32: row times width plus column, each once.
-    textures : dict of str to numpy.ndarray
-        ``(n,)`` or ``(n, 2)``: what the G-buffer's textures hold there, by their names. ``owner`` is the order of the
-        part that a pixel is of.
-    relief : str or None
-        What ``across`` is.
-    costs : tuple of Cost
-        What has gone into it.
-    """
-
-    size: tuple[int, int]
-    order: int
-    pixels: npt.NDArray[np.uint32]
+    size: tuple[int, int]  # width and height of all of it
+    order: int  # of the part that it shows, the lowest where it shows several
+    pixels: npt.NDArray[np.uint32]  # `(n,)` uint32: row times width plus column, each once
+    # `(n,)` or `(n, 2)`: what the G-buffer's textures hold there, by their names. `owner` is the order of the part that
+    # a pixel is of.
     textures: dict[str, Array]
-    relief: str | None = None
-    costs: tuple[Cost, ...] = field(default=(), compare=False)
+    relief: str | None = None  # what `across` is
+    costs: tuple[Cost, ...] = field(default=(), compare=False)  # what has gone into it
 
     @property
     def nbytes(self) -> int:

@@ -57,57 +57,25 @@ __all__ = ["PARTS", "THINNED_SHARE", "StreamedRenderer", "streamed_renderer"]
 PARTS = 12
 """How many parts that are not the even share fit into the memory: few are drawn in fewer calls, many fit it better."""
 
-THINNED_SHARE = 0.25
-"""Share of the memory for the streamlines that hurried pictures show."""
+THINNED_SHARE = 0.25  # share of the memory for the streamlines that hurried pictures show
 
-LEAST_ROOM = 60_000
-"""Bytes of memory below which a part's overhead exceeds its records."""
+LEAST_ROOM = 60_000  # bytes of memory below which a part's overhead exceeds its records
 
 THINNED = -1  # number of the even share among the parts
 
 
 class StreamedRenderer(NearestOnly):
-    """Draws a set with one part at a time on the GPU.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    parts : Parts
-    room : int
-        Bytes of GPU memory for all parts that are there at a time.
-    needed : callable
-        Returns the GPU bytes of a part.
-    pipeline : str
-        As of :class:`.FibletRenderer`.
-    alike : int, optional
-        As of :class:`.FibletRenderer`; the whole set's fiblets by default.
-    clock : callable
-        Seconds.
-
-    Attributes
-    ----------
-    pipeline : str
-        The one in use.
-    share : float
-        How many of the parts in the view the last picture shows.
-
-    Raises
-    ------
-    EngineError
-        If OpenGL is older than the pipeline.
-    GPUMemoryError
-        If not even two parts fit.
-    """
+    """Draws a set with one part at a time on the GPU."""
 
     def __init__(
         self,
         ctx: moderngl.Context,
         parts: Parts,
-        room: int,
-        needed: Callable[[FibletSet], int],
+        room: int,  # bytes of GPU memory for all parts that are there at a time
+        needed: Callable[[FibletSet], int],  # returns the GPU bytes of a part
         *,
-        pipeline: str = "auto",
-        alike: int | None = None,
+        pipeline: str = "auto",  # as of `.FibletRenderer`
+        alike: int | None = None,  # as of `.FibletRenderer`; the whole set's fiblets by default
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__(ctx, CONSTANTS)
@@ -270,10 +238,8 @@ class StreamedRenderer(NearestOnly):
         outside: Callable[[], moderngl.Texture | None] | None = None,
         state: Any = None,
     ) -> Gathered:
-        """Add up what all lines show, part by part; see :meth:`.LinesBehind.gather`.
-
-        While the picture is not complete, the sums are of the parts that are there, or of the even share.
-        """
+        """Add up what all lines show, part by part; see :meth:`.LinesBehind.gather`."""
+        # While the picture is not complete, the sums are of the parts that are there, or of the even share.
         from ..gather.gatherer import Gatherer
         from ..gather.gathering import SLICES
         from ..gather.paint import Paint
@@ -314,10 +280,8 @@ class StreamedRenderer(NearestOnly):
             renderer.drop_gathered()
 
     def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
-        """Return the least and the greatest of a per-point value; see :meth:`.FibletRenderer.value_range`.
-
-        What is measured is measured in every part, which takes as long as to fetch them all.
-        """
+        """Return the least and the greatest of a per-point value; see :meth:`.FibletRenderer.value_range`."""
+        # What is measured is measured in every part, which takes as long as to fetch them all.
         self._check_alive()
         ranges = []
         for number in range(len(self._parts)):

@@ -37,47 +37,24 @@ Found = TypeVar("Found")
 
 @dataclass(frozen=True)
 class PartOfSet:
-    """Streamlines that are coded one after another: the `number`-th of `count` parts of a set.
+    """Streamlines that are coded one after another: the `number`-th of `count` parts of a set."""
 
-    Attributes
-    ----------
-    key : str
-        Of the set: another one for other bytes.
-    path : str or None
-        Its file, which all workers see under this name; None for a part that comes along.
-    number, count : int
-    fiblets : int
-        Of the whole set.
-    """
-
-    key: str
-    path: str | None
+    key: str  # of the set: another one for other bytes
+    path: str | None  # its file, which all workers see under this name; None for a part that comes along
     number: int
     count: int
-    fiblets: int
+    fiblets: int  # of the whole set
 
 
 @dataclass(frozen=True)
 class Request:
-    """A picture that is wanted.
-
-    Attributes
-    ----------
-    view : View
-    style : FibletStyle
-        Without a volume for its values, which come apart from it.
-    pipeline : str
-    filter_key : int
-        Another one for another filter.
-    samples : bool
-        Whether each pixel is a sample (:mod:`pvfiblets.engine.fiblets.sample_layers`).
-    """
+    """A picture that is wanted."""
 
     view: View
-    style: FibletStyle
+    style: FibletStyle  # without a volume for its values, which come apart from it
     pipeline: str
-    filter_key: int
-    samples: bool = False
+    filter_key: int  # another one for another filter
+    samples: bool = False  # whether each pixel is a sample (`pvfiblets.engine.fiblets.sample_layers`)
 
 
 class _Drawing:
@@ -186,11 +163,9 @@ def value_range_of_part(
 
 
 def source_of(fiblets: FibletSet) -> tuple[str, str | None]:
-    """Return key and path of a set: of the file that it is mapped from, if it is from one.
-
-    The key tells files apart by size and time of change, sets in shards by their manifests, and sets in memory by where
-    they are.
-    """
+    """Return key and path of a set: of the file that it is mapped from, if it is from one."""
+    # The key tells files apart by size and time of change, sets in shards by their manifests, and sets in memory by
+    # where they are.
     if isinstance(fiblets, UnreadSet):
         manifest = fiblets.shards.manifest.to_json().encode()
         return f"{fiblets.shards.name} {hashlib.sha256(manifest).hexdigest()}", None

@@ -6,5 +6,4 @@ from functools import partial
 
 from pvfiblets.codec.compress import compress as _compress
 
-compress = partial(_compress, exact=False)
-"""As :func:`pvfiblets.compress`, without its default for small sets."""
+compress = partial(_compress, exact=False)  # as `pvfiblets.compress`, without its default for small sets

@@ -55,13 +55,11 @@ def error_figures(apart: npt.NDArray[np.float64], step: float, unit: str = "mm")
 def direction_angles(
     original: Floats, decoded: Floats, offsets: Ints, firsts: Ints | None = None
 ) -> npt.NDArray[np.float64]:
-    """Angles between the tangents of original and decoded lines, at both ends of every segment that shows.
-
-    A tangent is the sum of the unit vectors of a point's two segments, as a unit vector; at an end of a line, that of
-    the only one. A pixel is a 2000th of the bounds' diagonal. A segment shows where the original one is longer than
-    that; of one that is shorter than a thousandth of it the ends are one point twice, and it has no direction. Points
-    at which the original line turns back on itself have no tangent and are left out.
-    """
+    """Angles between the tangents of original and decoded lines, at both ends of every segment that shows."""
+    # A tangent is the sum of the unit vectors of a point's two segments, as a unit vector; at an end of a line, that of
+    # the only one. A pixel is a 2000th of the bounds' diagonal. A segment shows where the original one is longer than
+    # that; of one that is shorter than a thousandth of it the ends are one point twice, and it has no direction. Points
+    # at which the original line turns back on itself have no tangent and are left out.
     points = np.asarray(original, np.float64)
     if len(points) < 2:
         return np.empty(0)

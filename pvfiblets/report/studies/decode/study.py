@@ -59,10 +59,8 @@ def made(n: int, cap: int, step: float, seed: int) -> Made:
 
 
 def exact(fiblets: Made) -> npt.NDArray[np.longdouble]:
-    """Decode in NumPy's longest number (64 bits of mantissa on x86): what the codes mean, ``(n, 60, 3)``.
-
-    The meaning is that of :mod:`pvfiblets.codec.reference`: products of the table's quaternions as they are stored.
-    """
+    """Decode in NumPy's longest number (64 bits of mantissa on x86): what the codes mean, ``(n, 60, 3)``."""
+    # The meaning is that of `pvfiblets.codec.reference`: products of the table's quaternions as they are stored.
     long = np.longdouble
     table = quaternions()[fiblets.cap].astype(long)
     q = fiblets.frames.astype(long)

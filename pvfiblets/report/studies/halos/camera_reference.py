@@ -14,8 +14,6 @@ import numpy.typing as npt
 
 from pvfiblets.halos.style import HaloStyle
 
-__all__ = ["Array", "Camera", "Fragments", "Ints", "between", "box", "kept"]
-
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 

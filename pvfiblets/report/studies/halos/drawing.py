@@ -19,8 +19,6 @@ from .pictures import Singles, Viewpoint, averaged, darkness_of, finer
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = ["Drawing", "FibletHalos", "Strips"]
-
 
 class Drawing(Protocol):
     """Something that draws halos, some samples a pixel."""

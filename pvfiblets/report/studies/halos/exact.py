@@ -86,10 +86,8 @@ def crossings() -> Crossings:
 
 
 def gaps(darkness: Singles, made: Crossings) -> dict[str, Figure]:
-    """Measure gaps on either side of lines in front, and compare them with appendix A.
-
-    What is white along a line behind, from half way to the next crossing, is the gap on both sides.
-    """
+    """Measure gaps on either side of lines in front, and compare them with appendix A."""
+    # What is white along a line behind, from half way to the next crossing, is the gap on both sides.
     half = int(APART / PIXEL / 2)
     off = []
     for row, truth in zip(made.rows, made.truth, strict=True):

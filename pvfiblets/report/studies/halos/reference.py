@@ -25,8 +25,6 @@ from pvfiblets.halos.style import HaloStyle
 from .camera_reference import Array, Camera, Fragments, Ints, box
 from .strips_reference import strips
 
-__all__ = ["HALO", "LINE", "NOTHING", "Picture", "picture"]
-
 NOTHING, LINE, HALO = range(3)
 
 
@@ -79,10 +77,8 @@ def picture(
 
 
 def _singles(numbers: npt.ArrayLike) -> Array:
-    """Numbers as float32 has them, in which shaders compare them: what equals a threshold shall pass.
-
-    Those that are too large for it, as infinity is, count as its largest, so that there are numbers between.
-    """
+    """Numbers as float32 has them, in which shaders compare them: what equals a threshold shall pass."""
+    # Those that are too large for it, as infinity is, count as its largest, so that there are numbers between.
     wide = np.asarray(numbers, np.float64)
     most = float(np.finfo(np.float32).max) / 2.0
     return np.clip(wide, -most, most).astype(np.float32).astype(np.float64)

@@ -25,29 +25,21 @@ from .camera_reference import Array, Camera, Fragments, Ints, between, box, kept
 
 __all__ = ["mask", "places_along", "rates", "strips"]
 
-SHORT = 1e-6
-"""Pixels: a segment that takes no more of the screen has no direction there."""
+SHORT = 1e-6  # pixels: a segment that takes no more of the screen has no direction there
 
-SHARPEST = 0.5
-"""Cosine of the sharpest bend that is divided by its bisector."""
+SHARPEST = 0.5  # cosine of the sharpest bend that is divided by its bisector
 
-STEEPEST = 0.5
-"""Pixels of half width per pixel along a segment, up to which that is so."""
+STEEPEST = 0.5  # pixels of half width per pixel along a segment, up to which that is so
 
-FOLDED = 1.5
-"""Half widths from the axis: where bisectors cross before, it is open what of a strip is beyond them."""
+FOLDED = 1.5  # half widths from the axis: where bisectors cross before, it is open what of a strip is beyond them
 
-CLOSE = 0.1
-"""Pixels from a bisector within which it is noted whether both segments of the bend are there."""
+CLOSE = 0.1  # pixels from a bisector within which it is noted whether both segments of the bend are there
 
-OPEN = -np.finfo(np.float64).tiny
-"""Pixels within: not there, and yet as near to it as can be."""
+OPEN = -np.finfo(np.float64).tiny  # pixels within: not there, and yet as near to it as can be
 
-PLATEAU = 0.2
-"""Places along the mask from where on it is as wide as the strip."""
+PLATEAU = 0.2  # places along the mask from where on it is as wide as the strip
 
-STEP = 0.02
-"""Pixels along the axis over which slopes are taken."""
+STEP = 0.02  # pixels along the axis over which slopes are taken
 
 
 def mask(x: Array) -> Array:
@@ -73,10 +65,8 @@ def places_along(count: int, n_tapered: int, t_tapered: float) -> Array:
 
 
 def rates(points: Array, offsets: Ints, numbers: Array) -> Array:
-    """Change of numbers per mm at the vertices: the mean over the segments beside each, 0 where there is none.
-
-    Segments without length, or with a NaN, do not count.
-    """
+    """Change of numbers per mm at the vertices: the mean over the segments beside each, 0 where there is none."""
+    # Segments without length, or with a NaN, do not count.
     first = _firsts(offsets)
     with np.errstate(divide="ignore", invalid="ignore"):
         steep = np.abs(numbers[first + 1] - numbers[first]) / np.linalg.norm(points[first + 1] - points[first], axis=1)

@@ -156,11 +156,9 @@ def _inside(p: Array, q: Array) -> tuple[float, float]:
 
 
 def off_lines(shown: Picture, lines: Sequence[npt.NDArray[Any]], matrix: Array, size: tuple[int, int]) -> float:
-    """Return the largest distance in pixels between the picture and the lines in float64, either way.
-
-    Of a drawn pixel's centre from the nearest place on a line, and of a place on a line from the nearest drawn pixel's;
-    inf beyond ``REACH``, or where there is none.
-    """
+    """Return the largest distance in pixels between the picture and the lines in float64, either way."""
+    # Of a drawn pixel's centre from the nearest place on a line, and of a place on a line from the nearest drawn
+    # pixel's; inf beyond `REACH`, or where there is none.
     places = samples(lines, matrix, size)
     there = shown.there
     if not len(places) or not there.any():

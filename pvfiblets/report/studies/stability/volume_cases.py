@@ -91,12 +91,12 @@ def ball(n: int = 16, affine: npt.ArrayLike | None = None) -> RaycastVolume:
     return RaycastVolume(values, np.eye(4) if affine is None else np.asarray(affine, np.float64))
 
 
-def looking_at(volume: RaycastVolume, away: float = 1.9, *, near: float = 0.02, far: float = 6.0) -> Array:
-    """Return a camera that has all of a volume in view; distances are in its size."""
+def looking_at(volume: RaycastVolume) -> Array:
+    """Return a camera that has all of a volume in view."""
     bounds = np.array(volume.bounds).reshape(3, 2)
     middle, reach = bounds.mean(axis=1), float(np.ptp(bounds, axis=1).max())
-    eye = middle + away * reach * np.array([0.53, -0.71, 0.40]) / np.linalg.norm([0.53, -0.71, 0.40])
-    return camera(SIZE, eye=eye, target=middle, near=near * reach, far=far * reach)
+    eye = middle + 1.9 * reach * np.array([0.53, -0.71, 0.40]) / np.linalg.norm([0.53, -0.71, 0.40])
+    return camera(SIZE, eye=eye, target=middle, near=0.02 * reach, far=6.0 * reach)
 
 
 def surface(

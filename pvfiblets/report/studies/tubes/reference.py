@@ -39,11 +39,9 @@ Ints = npt.NDArray[np.int64]
 
 MISS, ENTRY, EXIT, CAP = range(4)
 
-_BLOCK = 1 << 13
-"""Pairs of ray and half solved at a time: their working arrays stay in cache."""
+_BLOCK = 1 << 13  # pairs of ray and half solved at a time: their working arrays stay in cache
 
-_PAIRS = 1 << 21
-"""Pairs whose bounding spheres are tried at a time."""
+_PAIRS = 1 << 21  # pairs whose bounding spheres are tried at a time
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,15 +70,11 @@ def hits(
     end: npt.ArrayLike = np.inf,
     capped: bool = False,
 ) -> Hits:
-    """Meet each ray with one half of a segment.
-
-    Of every interval of the curve that the ray runs inside of: its entry, if that is not before `start`; else, if the
-    ray is inside still at `start`, its exit, or with `capped` the cut at `start` itself. The nearest of these counts.
-
-    Notes
-    -----
-    Russig et al. 2020, section 3.2, "Intersection". Where a ray only touches, rounding decides.
-    """
+    """Meet each ray with one half of a segment."""
+    # Of every interval of the curve that the ray runs inside of: its entry, if that is not before `start`; else, if the
+    # ray is inside still at `start`, its exit, or with `capped` the cut at `start` itself. The nearest of these counts.
+    #
+    # Russig et al. 2020, section 3.2, "Intersection". Where a ray only touches, rounding decides.
     halves, origins, unit = _halves(controls), _vectors(origins, "origins"), _directions(directions)
     low, high = _limits(start, "start"), _limits(end, "end")
     n = np.broadcast_shapes(halves.shape[:1], origins.shape[:1], unit.shape[:1], low.shape, high.shape)[0]

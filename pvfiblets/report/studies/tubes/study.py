@@ -244,8 +244,7 @@ def halves(ctx: Any, options: Options) -> Iterator[Record]:  # noqa: ARG001 - as
 PARTS: dict[Part, float] = {
     solvers: 3.0, pictures: 5.0, sets: 4.0, ray_sweeps: 2.0, picture_sweeps: 1.0, stored: 1.0, halves: 1.0,
 }  # fmt: skip
-IN_WINDOWS: dict[WindowPart, float] = {in_windows: 4.0}
-"""Measurements, and the weight of each part's share of the time."""
+IN_WINDOWS: dict[WindowPart, float] = {in_windows: 4.0}  # measurements, and the weight of each part's share of the time
 
 
 class TubesStudy:

@@ -122,10 +122,8 @@ def _program(ctx: Any, *, tolerance: float, sides: tuple[int, int]) -> Any:
 
 
 def carried_normals(tangents: Array, segments: npt.NDArray[np.int64]) -> Array:
-    """Return a unit vector across each node's tangent that turns as little as can be from node to node.
-
-    Each tube starts with any, which is projected from node to node onto the plane across the next tangent.
-    """
+    """Return a unit vector across each node's tangent that turns as little as can be from node to node."""
+    # Each tube starts with any, which is projected from node to node onto the plane across the next tangent.
     lengths = np.linalg.norm(tangents, axis=1, keepdims=True)
     unit = np.divide(tangents, lengths, out=np.zeros(tangents.shape), where=lengths > 0.0)
     normals = across(unit)

@@ -10,8 +10,6 @@ import numpy.typing as npt
 
 from ...cameras import Camera
 
-__all__ = ["drawing", "drawn", "sample"]
-
 
 def drawn(ctx: Any, renderer: Any, camera: Camera, style: Any) -> Any:
     """Draw a picture, wait for it, and return its G-buffer."""

@@ -53,8 +53,7 @@ PANELS = {"riemann": 1, "exponential": 1, "simpson": 2, "romberg": 4, "rk4": 2}
 
 INTEGRATORS = (*PANELS, "preintegrated")
 
-MIDDLE = ("riemann", "exponential")
-"""Integrators that take a sample in the middle of each step, not at its ends."""
+MIDDLE = ("riemann", "exponential")  # integrators that take a sample in the middle of each step, not at its ends
 
 STABLE_UP_TO = {"riemann": 2.0, "rk4": 2.785293563405282 / 2.0}
 """Largest ``kappa h`` at which light does not grow from panel to panel, for the integrators with a limit."""
@@ -62,8 +61,7 @@ STABLE_UP_TO = {"riemann": 2.0, "rk4": 2.785293563405282 / 2.0}
 PHASES = 5
 """Rays of a profile in a study. They begin at different places, so that no sample lies well or badly by chance."""
 
-LATEST = 1 / 16
-"""Part of a profile before which they begin; all are shorter than it by this part."""
+LATEST = 1 / 16  # part of a profile before which they begin; all are shorter than it by this part
 
 
 def integrate(method: str, kappa: npt.ArrayLike, colour: npt.ArrayLike, ds: npt.ArrayLike) -> tuple[Floats, Floats]:
@@ -128,11 +126,9 @@ def _exponential(kappa: Floats, colour: Floats, h: Floats) -> tuple[Floats, Floa
 
 
 def _transparencies(kappa: Floats, h: Floats) -> Floats:
-    """``exp(-tau)`` at each sample, by the polynomial through all of them.
-
-    Such a polynomial may dip below 0 where extinction rises steeply; tau is kept from falling, and from getting beyond
-    that of the whole panel, which is positive.
-    """
+    """``exp(-tau)`` at each sample, by the polynomial through all of them."""
+    # Such a polynomial may dip below 0 where extinction rises steeply; tau is kept from falling, and from getting
+    # beyond that of the whole panel, which is positive.
     tau = np.einsum("kj,...j->...k", _cumulative(kappa.shape[-1]).astype(kappa.dtype), kappa) * h[..., None]
     return np.exp(-np.minimum(np.maximum.accumulate(np.maximum(tau, 0), axis=-1), np.maximum(tau[..., -1:], 0)))
 

@@ -27,8 +27,7 @@ __all__ = ["Crossings", "Maxima", "Rays", "composite", "gradient", "isosurface",
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-ORDER = 8
-"""Nodes of the Gauss rule: exact for polynomials of degree 15."""
+ORDER = 8  # nodes of the Gauss rule: exact for polynomials of degree 15
 
 ROUNDING = 1e-14
 """Part of the largest value that may be rounding's: so near to a value, the field is at it; so little behind a local
@@ -98,11 +97,9 @@ def isosurface(
     *,
     filter: str = "trilinear",  # noqa: A002
 ) -> Crossings:
-    """Where rays first pass through an isosurface, from either side (section III-B, equation 2).
-
-    A value is crossed where the field gets to it from below, or falls below it. Where it only touches a value nothing
-    is crossed, nor where a ray begins.
-    """
+    """Where rays first pass through an isosurface, from either side (section III-B, equation 2)."""
+    # A value is crossed where the field gets to it from below, or falls below it. Where it only touches a value nothing
+    # is crossed, nor where a ray begins.
     from . import reference_kernels as kernels
 
     levels = np.atleast_1d(np.array(values, np.float64))
@@ -179,10 +176,8 @@ def composite(
 
 
 def _pieces(transfer: Transfer, low: float, high: float) -> tuple[Array, Array]:
-    """Values where a transfer function has kinks, and the pieces before, between and after them.
-
-    ``(m,)`` and ``(m + 1, 10)``: values at a piece's ends, RGBA at the one and at the other.
-    """
+    """Values where a transfer function has kinks, and the pieces before, between and after them."""
+    # `(m,)` and `(m + 1, 10)`: values at a piece's ends, RGBA at the one and at the other.
     table = transfer.table.astype(np.float64)
     entries = np.linspace(*transfer.clim, len(table))
     # The highest value that is there belongs to the piece below it.
@@ -222,11 +217,9 @@ def sample(volume: RaycastVolume, points: npt.ArrayLike, filter: str = "trilinea
 
 
 def gradient(volume: RaycastVolume, points: npt.ArrayLike, filter: str = "trilinear") -> Array:  # noqa: A002
-    """The field's gradient at places, by central differences (section III-A).
-
-    Differences are of the field one voxel to either side along each axis of the grid, or at the edge of the box
-    of the voxels' centres where that is nearer, over the distance between the two.
-    """
+    """The field's gradient at places, by central differences (section III-A)."""
+    # Differences are of the field one voxel to either side along each axis of the grid, or at the edge of the box of
+    # the voxels' centres where that is nearer, over the distance between the two.
     points = np.asarray(points, np.float64)
     return _gradients(volume, _in_voxels(volume, points), filter).reshape(points.shape)
 

@@ -32,8 +32,7 @@ OVERSHOOT = ((4.0 / 3.0) ** 3 - 1.0) / 2.0
 """By how much of the spread of 64 voxels Catmull-Rom's coefficients lie beyond them at most: along each axis by a sixth
 of the spread to either side."""
 
-HALVINGS = 200
-"""More than Newton's method, kept in its bracket, ever takes."""
+HALVINGS = 200  # more than Newton's method, kept in its bracket, ever takes
 
 
 class Scratch(NamedTuple):
@@ -125,10 +124,8 @@ def _blossom(p: float, q: float, r: float, s: float, x: float, y: float, z: floa
 
 @kernel
 def _restrict(tensor: Any, how: int, axis: int, i: int, j: int, a: float, b: float) -> None:
-    """Turn values along one axis into coefficients over ``a`` to ``b``: 2 of a line, 4 of Catmull-Rom's cubic.
-
-    `tensor` is flat, and `i` and `j` say which line of that axis it is.
-    """
+    """Turn values along one axis into coefficients over ``a`` to ``b``: 2 of a line, 4 of Catmull-Rom's cubic."""
+    # `tensor` is flat, and `i` and `j` say which line of that axis it is.
     first = 4 * i + j if axis == 0 else (16 * i + j if axis == 1 else 16 * i + 4 * j)
     step = 16 if axis == 0 else (4 if axis == 1 else 1)
     p, q = tensor[first], tensor[first + step]
@@ -145,10 +142,8 @@ def _restrict(tensor: Any, how: int, axis: int, i: int, j: int, a: float, b: flo
 
 @kernel
 def along(field: Any, how: int, memory: Scratch) -> int:
-    """Bernstein coefficients of the field in a cell, from one place in it to another; gives their degree.
-
-    Takes ``memory.cell`` and ``memory.ends``, and leaves the coefficients in ``memory.polynomial``.
-    """
+    """Bernstein coefficients of the field in a cell, from one place in it to another; gives their degree."""
+    # Takes `memory.cell` and `memory.ends`, and leaves the coefficients in `memory.polynomial`.
     cell, tensor, polynomial = memory.cell, memory.tensor, memory.polynomial
     if how == NEAREST:
         polynomial[0] = _at(field, cell[0], cell[1], cell[2])
@@ -233,11 +228,9 @@ def solved(polynomial: Any, degree: int, low: float, high: float, value: float, 
 
 @kernel
 def extrema(degree: int, memory: Scratch) -> int:
-    """Where ``memory.polynomial`` turns between 0 and 1: into ``memory.places``, with 0 and 1; gives their number.
-
-    Between neighbouring roots of a derivative the next lower one is monotone, and so holds one root at most: from the
-    last derivative, a line, up to the first.
-    """
+    """Where ``memory.polynomial`` turns between 0 and 1: into ``memory.places``, with 0 and 1; gives their number."""
+    # Between neighbouring roots of a derivative the next lower one is monotone, and so holds one root at most: from the
+    # last derivative, a line, up to the first.
     polynomial, table, found, work = memory.polynomial, memory.table, memory.places, memory.work
     found[0], found[1] = 0.0, 1.0
     rises, falls = False, False

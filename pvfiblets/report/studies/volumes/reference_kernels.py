@@ -18,8 +18,7 @@ from .reference_cells import NEAREST, Scratch, along, enter, evaluated, extrema,
 
 __all__ = ["first_crossings", "gradients", "greatest", "samples", "step", "stretch"]
 
-SHORTEST = 1e-14
-"""Part of its distance along a ray that a stretch takes at least to count."""
+SHORTEST = 1e-14  # part of its distance along a ray that a stretch takes at least to count
 
 
 @kernel
@@ -52,11 +51,9 @@ def _side(value: float, level: float, rounding: float) -> int:
 
 @kernel
 def _crossed(state: int, before: int, after: int) -> int:
-    """Whether a monotone function is at or above a level at its end, 1, or below it, -1.
-
-    By the sides that its ends are on, and the one, 1 or -1, that it was on before, if any. A function that only touches
-    the level has been on one side all along; one that stays at it is at it.
-    """
+    """Whether a monotone function is at or above a level at its end, 1, or below it, -1."""
+    # By the sides that its ends are on, and the one, 1 or -1, that it was on before, if any. A function that only
+    # touches the level has been on one side all along; one that stays at it is at it.
     if after != 0:
         return after
     if before == 0:
@@ -68,10 +65,8 @@ def _crossed(state: int, before: int, after: int) -> int:
 def _next(
     degree: int, a: float, b: float, levels: Any, states: Any, only: int, rounding: float, memory: Scratch
 ) -> Any:
-    """Which level the polynomial of a stretch crosses first from ``a`` to ``b``, and where.
-
-    Between the two it is monotone. -1 for none. Takes the sides of all levels, or of `only` one, to ``b``.
-    """
+    """Which level the polynomial of a stretch crosses first from ``a`` to ``b``, and where."""
+    # Between the two it is monotone. -1 for none. Takes the sides of all levels, or of `only` one, to `b`.
     start = evaluated(memory.polynomial, degree, a, memory.work)[0]
     end = evaluated(memory.polynomial, degree, b, memory.work)[0]
     where, which = math.inf, -1
@@ -211,10 +206,8 @@ def samples(field: Any, how: int, places: Any, values: Any) -> None:
 
 @kernel
 def gradients(field: Any, how: int, places: Any, found: Any) -> None:
-    """Central differences of the field at places ``(n, 3)`` float64 in voxels, into ``found`` (n, 3) float64.
-
-    Over one voxel to either side, or to the edge of the box of the voxel centres if that is nearer.
-    """
+    """Central differences of the field at places ``(n, 3)`` float64 in voxels, into ``found`` (n, 3) float64."""
+    # Over one voxel to either side, or to the edge of the box of the voxel centres if that is nearer.
     for i in range(len(found)):
         memory, at = scratch(), np.empty(3)
         for k in range(3):

@@ -24,11 +24,9 @@ from .reference_kernels import step, stretch
 
 __all__ = ["integrals"]
 
-DEEPEST = 60
-"""Halvings of a piece after which its ends are neighbouring floats."""
+DEEPEST = 60  # halvings of a piece after which its ends are neighbouring floats
 
-ROUNDING = 1e-15
-"""Of a part; no halving makes it less."""
+ROUNDING = 1e-15  # of a part; no halving makes it less
 
 
 @kernel
@@ -52,11 +50,9 @@ def _depth(alpha: float, cap: float) -> float:
 
 @kernel
 def _quadrature(memory: Scratch, degree: int, length: float, piece: Any, rule: Any, cap: float, part: Any) -> None:
-    """Optical depth and colour of a part of a stretch of a length, by one Gauss rule.
-
-    `part` (7,) is where the part begins and ends, 0 to 1. The others are filled in: the optical depth, RGB, and the
-    opacity as the rule has it, which is that of the optical depth only if the nodes lie closely enough.
-    """
+    """Optical depth and colour of a part of a stretch of a length, by one Gauss rule."""
+    # `part` (7,) is where the part begins and ends, 0 to 1. The others are filled in: the optical depth, RGB, and the
+    # opacity as the rule has it, which is that of the optical depth only if the nodes lie closely enough.
     nodes, weights, sums, found = rule
     size = (part[1] - part[0]) * length
     for i in range(len(nodes)):
@@ -84,10 +80,8 @@ def _integrate(
     memory: Scratch, degree: int, a: float, b: float, length: float, piece: Any, rule: Any, cap: float,
     tolerance: float, stack: Any, light: Any,
 ) -> None:  # fmt: skip
-    """Add the light of a piece of a stretch without kinks: `light` (4,) is RGB and transparency so far.
-
-    What both halves of a part give together is kept if the part itself gives the same, else they are parts.
-    """
+    """Add the light of a piece of a stretch without kinks: `light` (4,) is RGB and transparency so far."""
+    # What both halves of a part give together is kept if the part itself gives the same, else they are parts.
     # Rows of the stack are parts as `_quadrature` has them; the last two are the halves of the uppermost.
     halves, top, known = DEEPEST + 1, 0, False
     stack[0, 0], stack[0, 1] = a, b

@@ -27,11 +27,9 @@ __all__ = ["DENSE", "ENTRIES", "Profile", "profiles"]
 
 Array = npt.NDArray[np.float64]
 
-ENTRIES = 256
-"""Of the profiles' tables: steep ones rise within one 255th of the values' range."""
+ENTRIES = 256  # of the profiles' tables: steep ones rise within one 255th of the values' range
 
-DENSE = 0.9
-"""Opacity of a unit where the profiles are densest."""
+DENSE = 0.9  # opacity of a unit where the profiles are densest
 
 
 @dataclass(frozen=True, eq=False)

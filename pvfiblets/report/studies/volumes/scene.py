@@ -60,10 +60,8 @@ def look_of(volume: RaycastVolume, mode: str) -> Look:
 
 
 def circle(volume: RaycastVolume, frames: int, size: tuple[int, int]) -> list[Camera]:
-    """Return cameras all around a volume; successive ones lie far apart, so that any few are fair.
-
-    A face of the volume's box fills three quarters of the picture; its corners may lie outside.
-    """
+    """Return cameras all around a volume; successive ones lie far apart, so that any few are fair."""
+    # A face of the volume's box fills three quarters of the picture; its corners may lie outside.
     box = np.array(volume.bounds).reshape(3, 2)
     centre, radius = box.mean(axis=1), 0.5 * float(np.linalg.norm(np.ptp(box, axis=1)))
     narrow = min(1.0, size[0] / size[1]) * math.tan(math.radians(VERTICAL_ANGLE / 2))

@@ -161,10 +161,8 @@ def _turned(frame: Any, x: float, y: float, z: float) -> Any:
 
 @kernel
 def _around(x: float, y: float, z: float) -> Any:
-    """Frame of a forward vector by the constant vector of equation 2: up and left across it.
-
-    The constant is (0, 0, 1) turned a little, so that no decoded direction and no axis is along it.
-    """
+    """Frame of a forward vector by the constant vector of equation 2: up and left across it."""
+    # The constant is (0, 0, 1) turned a little, so that no decoded direction and no axis is along it.
     vx, vy, vz = 0.0871557427, 0.0436193874, 0.9952393
     ux, uy, uz = y * vz - z * vy, z * vx - x * vz, x * vy - y * vx
     r = math.sqrt(ux * ux + uy * uy + uz * uz)

@@ -17,8 +17,6 @@ import numpy.typing as npt
 
 from . import COUNT_BYTES
 
-__all__ = ["LinesPacked", "linearised"]
-
 
 @dataclass
 class LinesPacked:

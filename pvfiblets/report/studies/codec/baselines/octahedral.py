@@ -2,7 +2,7 @@
 
 Octahedral: Meyer et al., "On floating-point normal vectors", 2010 ([MSS*10] of the fiblets paper). The vector is
 divided by its 1-norm; the half behind ``x = 0`` is folded outwards, and the square ``[-1, 1]^2`` of ``(y, z)`` is
-rounded to ``levels`` values an axis, both ends among them. A direction is off by no more than :func:`worst_angle`.
+rounded to ``levels`` values an axis, both ends among them.
 
 Stretching: Rousseau and Boubekeur, "Unorganized unit vectors sets quantization", 2020 ([RB20]): the cap of half-angle
 ``alpha`` around X is mapped to the sphere (``spread = 2``; QFib) or to the half with ``x >= 0`` (``spread = 1``; the
@@ -17,11 +17,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from pvfiblets.codec.jit import kernel
-
-__all__ = ["angle_between", "from_cap", "pack", "ratio_of", "to_cap", "unpack", "worst_angle"]
 
 
 @kernel
@@ -53,15 +49,6 @@ def unpack(i: int, j: int, levels: int) -> Any:
     return x * r, u * r, v * r
 
 
-def worst_angle(levels: int) -> float:
-    """Return an angle, radians, that no direction is off by more than.
-
-    A cell's half-diagonal in the square is ``sqrt(2) / (levels - 1)``; on the octahedron's faces, which are tilted,
-    lengths grow by up to ``sqrt(3)``, and the faces are ``1 / sqrt(3)`` from the centre at least.
-    """
-    return math.sqrt(2.0) / (levels - 1) * math.sqrt(3.0) * math.sqrt(3.0)
-
-
 def ratio_of(angle: float) -> float:
     """Return ``1 - cos(angle)`` with all digits where the angle is small."""
     return 2.0 * math.sin(0.5 * angle) ** 2
@@ -88,8 +75,3 @@ def to_cap(x: float, y: float, z: float, ratio: float, spread: float) -> Any:
     away = ratio * (1.0 - x) / spread
     width = math.sqrt(max(away * (2.0 - away), 0.0)) / lateral
     return 1.0 - away, y * width, z * width
-
-
-def angle_between(a: Any, b: Any) -> Any:
-    """Angles between vectors, ``(n,)`` radians, exact for small ones too; for measuring the maps."""
-    return np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), (a * b).sum(-1))
