@@ -203,14 +203,20 @@ class FilteredActor(ClippedActor):
         self._choose(groups=wanted, ungrouped=False)
 
     def show_only(self, ids: Any) -> None:
-        """Show the streamlines of these `ids` only: numbers, a mask or a slice; None for all."""
-        mask = None
-        if ids is not None:
-            from pvfiblets.codec.decompress import select_streamlines
+        """Show the streamlines of these `ids` only: numbers, a mask, a slice, a condition or region; None for all."""
+        self._choose(ids=None if ids is None else self._mask_of(ids))
 
-            mask = np.zeros(len(self._subject.lines), bool)
-            mask[select_streamlines(len(self._subject.lines), ids)] = True
-        self._choose(ids=mask)
+    def _mask_of(self, ids: Any) -> np.ndarray:
+        from pvfiblets.codec.decompress import select_streamlines
+        from pvfiblets.query.regions.region import Region
+        from pvfiblets.query.selection.predicates import Predicate
+
+        if isinstance(ids, Predicate | Region):
+            return self.streamlines_where(ids)
+        count = len(self._subject.lines)
+        mask = np.zeros(count, np.bool_)
+        mask[select_streamlines(count, getattr(ids, "ids", ids))] = True
+        return mask
 
     @property
     def shown(self) -> np.ndarray:

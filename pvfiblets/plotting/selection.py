@@ -92,8 +92,9 @@ class SelectedActor(FilteredActor):
 
         Parameters
         ----------
-        ids : array_like, slice or Picked
-            Numbers (negative ones count from the end), a mask of bool, one for each line, a slice, or a pick.
+        ids : array_like, slice, Picked, Predicate or Region
+            Numbers (negative ones count from the end), a mask of bool, one for each line, a slice, a pick, or a
+            condition or region as for :meth:`streamlines_where`.
         mode : {"replace", "add", "remove", "toggle"}
             What becomes of the present selection.
 
@@ -104,13 +105,9 @@ class SelectedActor(FilteredActor):
         ValueError
             If there is no such mode.
         """
-        from pvfiblets.codec.decompress import select_streamlines
-
         if mode not in MODES:
             raise ValueError(f"mode is {mode!r}; choose one of {', '.join(MODES)}")
-        count = len(self._subject.lines)
-        chosen = np.zeros(count, np.bool_)
-        chosen[select_streamlines(count, getattr(ids, "ids", ids))] = True
+        chosen = self._mask_of(ids)
         if self._selected is not None and mode != "replace":
             before = self._selected
             chosen = {"add": before | chosen, "remove": before & ~chosen, "toggle": before ^ chosen}[mode]

@@ -128,6 +128,13 @@ def test_regions(shown, tract):
     through = np.array([len(line) > 0 and bool(ball.contains(line).any()) for line in lines])
     ends = np.array([len(line) > 0 and bool(ball.contains(line[[0, -1]]).any()) for line in lines])
     np.testing.assert_array_equal(actor.streamlines_where(ball), through)
+    for chosen, wanted in ((ball, through), (~regions.passes(ball), ~through)):
+        actor.select(chosen)
+        np.testing.assert_array_equal(actor.selection, np.flatnonzero(wanted))
+    actor.show_only(ball)
+    np.testing.assert_array_equal(actor.shown, through)
+    actor.show_only(None)
+    actor.deselect()
     np.testing.assert_array_equal(actor.streamlines_where(regions.ends_in(ball)), ends)
     actor.include(ball)
     np.testing.assert_array_equal(actor.shown, through)

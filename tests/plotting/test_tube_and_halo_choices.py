@@ -99,6 +99,11 @@ def test_lines_that_pass_a_ball_are_those_of_numpy(stage, tract):
     np.testing.assert_array_equal(actor.shown, near)
     assert_shows_alone(plotter, actor, kind, tract[near])
     np.testing.assert_array_equal(actor.streamlines_where(BALL), near)
+    actor.select(BALL)
+    np.testing.assert_array_equal(actor.selection, np.flatnonzero(near))
+    actor.select(~regions.passes(BALL))
+    np.testing.assert_array_equal(actor.selection, np.flatnonzero(~near))
+    actor.deselect()
     b = np.reshape(BOX, (3, 2))
     boxed = holds(lines, lambda line: ((line >= b[:, 0]) & (line <= b[:, 1])).all(axis=1), np.all)
     assert actor.exclude(regions.stays_in(regions.Box(BOX)), name="not within") == "not within"

@@ -45,9 +45,9 @@ class SelectableActor(BundledActor):
 
         Parameters
         ----------
-        ids : array_like, slice or Picked
-            Numbers (negative ones count from the end), a mask ``(n_streamlines,)`` of bool, a slice,
-            or a pick.
+        ids : array_like, slice, Picked, Predicate or Region
+            Numbers (negative ones count from the end), a mask ``(n_streamlines,)`` of bool, a slice, a pick, or
+            a condition or region as for :meth:`streamlines_where`.
         mode : {"replace", "add", "remove", "toggle"}
             What becomes of the present selection.
         as_tubes : bool, optional
