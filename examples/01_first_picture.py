@@ -17,6 +17,7 @@ from pvfiblets.synthetic import brain_streamlines
 
 def main(folder: Path) -> None:
     """Draw the brain from the left; colour says which way fibres run."""
+    folder.mkdir(parents=True, exist_ok=True)
     brain = brain_streamlines(20_000)  # or the path of a .tck, .trk, .trx, .vtk, .vtp or .fiblets file
 
     plotter = pv.Plotter(off_screen=True, window_size=(1200, 900))

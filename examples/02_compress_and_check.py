@@ -19,6 +19,7 @@ from pvfiblets.synthetic import brain_streamlines
 
 def main(folder: Path) -> None:
     """Print size and error of four ways to compress, and plot the errors of three."""
+    folder.mkdir(parents=True, exist_ok=True)
     brain = brain_streamlines(5_000, fa=True)
     raw = brain.points.nbytes
     print(f"{len(brain):,} streamlines, {brain.n_points:,} points, {raw / 1e6:.1f} MB as float32")

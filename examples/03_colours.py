@@ -19,6 +19,7 @@ from pvfiblets.synthetic import BUNDLES, brain_streamlines
 
 def main(folder: Path) -> None:
     """Colour by orientation, by length, by FA in each point, and one colour per bundle."""
+    folder.mkdir(parents=True, exist_ok=True)
     brain = brain_streamlines(8_000, fa=True)
     fiblets = pvfiblets.compress(brain, per_point=["fa"])
     palette = np.random.default_rng(3).uniform(0.2, 1.0, (len(BUNDLES), 3))

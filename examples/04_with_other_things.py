@@ -1,6 +1,6 @@
 """
-With other things
-=================
+Among meshes
+============
 
 Streamlines among other things: a translucent surface around them, an opaque one within.
 
@@ -17,6 +17,7 @@ from pvfiblets.synthetic import brain_streamlines
 
 def main(folder: Path) -> None:
     """Show one bundle in a glass brain, with a lesion in it."""
+    folder.mkdir(parents=True, exist_ok=True)
     brain = brain_streamlines(20_000)
     callosum = brain[brain.groups["callosum"]]
     points = pv.PolyData(brain.points[::50])

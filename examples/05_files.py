@@ -19,6 +19,7 @@ from pvfiblets.synthetic import brain_streamlines
 
 def main(folder: Path) -> None:
     """Write one tractogram in every format, and compare and plot the sizes."""
+    folder.mkdir(parents=True, exist_ok=True)
     sizes = {}
     lines = pv.wrap(brain_streamlines(500).to_polydata())
     lines.clear_data()  # points alone: some formats cannot hold bundles, and warn

@@ -1,6 +1,6 @@
 """
-Change it live
-==============
+Change settings live
+====================
 
 An actor's properties change at any time, and the next render shows it.
 
@@ -17,6 +17,7 @@ from pvfiblets.synthetic import brain_streamlines
 
 def main(folder: Path) -> None:
     """Write one picture after each change, and print what the last one costs."""
+    folder.mkdir(parents=True, exist_ok=True)
     plotter = pv.Plotter(off_screen=True, window_size=(1000, 800))
     plotter.set_background("black")
     bar = {"color": "white", "vertical": True, "position_x": 0.86, "position_y": 0.25, "height": 0.5}

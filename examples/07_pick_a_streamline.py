@@ -17,6 +17,7 @@ from pvfiblets.synthetic import brain_streamlines
 
 def main(folder: Path) -> None:
     """Pick in the middle of the picture."""
+    folder.mkdir(parents=True, exist_ok=True)
     plotter = pv.Plotter(off_screen=True, window_size=(1000, 750))
     plotter.set_background("black")
     actor = plotter.add_fiblets(brain_streamlines(6_000))

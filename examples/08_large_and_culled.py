@@ -1,6 +1,6 @@
 """
-Large and culled
-================
+Large sets and culling
+======================
 
 Many lines: what this machine's OpenGL can draw with, what culling leaves out, and that it loses nothing.
 
@@ -17,6 +17,7 @@ from pvfiblets.synthetic import brain
 
 def main(folder: Path) -> None:
     """Turn a brain of ten million segments with culling and without, and compare the pictures."""
+    folder.mkdir(parents=True, exist_ok=True)
     fiblets = brain(11_000, step=0.1)  # compressed as it is made: no file and no raw points
     print(fiblets)
     pictures = {}

@@ -30,6 +30,7 @@ def anatomy() -> pv.ImageData:
 
 def main(folder: Path) -> None:
     """Write one picture of four cuts."""
+    folder.mkdir(parents=True, exist_ok=True)
     plotter = pv.Plotter(off_screen=True, window_size=(1000, 800), shape=(2, 2))
     streamlines = brain_streamlines(10_000)
     torus = pv.ParametricTorus(ringradius=45, crosssectionradius=20).translate((0, 0, 15))

@@ -19,6 +19,7 @@ from pvfiblets.synthetic import brain_streamlines
 
 def main(folder: Path) -> None:
     """Write one picture of four choices, and a file of the last one."""
+    folder.mkdir(parents=True, exist_ok=True)
     fiblets = pvfiblets.compress(brain_streamlines(8_000))
     ball = regions.Sphere((-20, -10, 25), 14)
     top = regions.Plane((0, 0, 1), (0, 0, 55))

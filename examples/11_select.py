@@ -22,6 +22,7 @@ mpl.use("Agg")
 
 def main(folder: Path) -> None:
     """Write a picture of a selection and a profile along it."""
+    folder.mkdir(parents=True, exist_ok=True)
     streamlines = brain_streamlines(6_000)
     _, y, z = streamlines.points.T
     streamlines.per_point = {"fa": (0.5 + 0.3 * np.cos(z / 20) * np.cos(y / 30)).astype(np.float32)}

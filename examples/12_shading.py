@@ -18,6 +18,7 @@ from pvfiblets.synthetic import brain_streamlines
 
 def main(folder: Path) -> None:
     """Write one picture of six ways to shade."""
+    folder.mkdir(parents=True, exist_ok=True)
     fiblets = pvfiblets.compress(brain_streamlines(6_000))
     plotter = pv.Plotter(off_screen=True, window_size=(1350, 800), shape=(2, 3), border=False)
     for index in range(6):

@@ -19,6 +19,7 @@ from pvfiblets.synthetic import brain_streamlines
 
 def main(folder: Path) -> None:
     """Write one picture of four ways to colour."""
+    folder.mkdir(parents=True, exist_ok=True)
     streamlines = brain_streamlines(5_000)
     volume = pv.ImageData(dimensions=(80, 96, 80), spacing=(2.0, 2.0, 2.0), origin=(-79.0, -95.0, -70.0))
     x, y, z = volume.points.T

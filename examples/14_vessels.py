@@ -104,6 +104,7 @@ def draw_inside(plotter: pv.Plotter, tree: pv.PolyData, nodes: np.ndarray) -> No
 
 def main(folder: Path) -> None:
     """Write one picture of the whole, of a cut and from inside."""
+    folder.mkdir(parents=True, exist_ok=True)
     tree = vessel_tree()
     branches = tree.lines.reshape(-1, NODES + 2)[:, 1:]
     print(f"{len(branches):,} branches, {tree['radius'].min():.2f} to {tree['radius'].max():.2f} mm")

@@ -33,6 +33,7 @@ def nodes_of(streamlines: pvfiblets.Streamlines) -> tuple[list[np.ndarray], list
 
 def main(folder: Path) -> None:
     """Write one picture of a selected bundle, and one of some tracts whose FA is their colour and their thickness."""
+    folder.mkdir(parents=True, exist_ok=True)
     brain = brain_streamlines(5_000, fa=True)
     fiblets = pvfiblets.compress(brain)
 

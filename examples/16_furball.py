@@ -19,6 +19,7 @@ from pvfiblets.tubes.curves import cubic
 
 def main(folder: Path) -> None:
     """Write a picture of the whole ball and one from nearby, where a hair is picked and marked."""
+    folder.mkdir(parents=True, exist_ok=True)
     tubes = tube_set("furball")
     plotter = pv.Plotter(off_screen=True, window_size=(1350, 700), shape=(1, 2), border=False)
     plotter.set_background("black", all_renderers=True)

@@ -62,6 +62,7 @@ def draw_filtered(folder: Path, brain: Streamlines) -> None:
 
 def main(folder: Path) -> None:
     """Write one picture of a region of interest, and one of three stages of filtering."""
+    folder.mkdir(parents=True, exist_ok=True)
     brain = brain_streamlines(7_000, step=1.0, fa=True)
     chosen = through(SLICE, brain)
     print(f"{len(chosen):,} of {len(brain):,} streamlines pass through the slice")

@@ -62,6 +62,7 @@ def streams(flow: pv.ImageData, rakes: int = 56, each: int = 14, seed: int = 2) 
 
 def main(folder: Path) -> None:
     """Write a picture of the air among the furniture, and the same in stereo."""
+    folder.mkdir(parents=True, exist_ok=True)
     lines = streams(air())
     print(f"{lines.n_lines:,} streamlines of {lines.n_points:,} vertices")
     plotter = pv.Plotter(off_screen=True, window_size=(1400, 850))

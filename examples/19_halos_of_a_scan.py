@@ -39,6 +39,7 @@ def scan(mesh: pv.PolyData, n: int, seed: int = 0) -> np.ndarray:
 
 def main(folder: Path) -> None:
     """Write a picture of the skeleton in ink, and of its head in light."""
+    folder.mkdir(parents=True, exist_ok=True)
     points = scan(surface(), 300_000)
     window = {"window_size": (1500, 800), "shape": (1, 2), "border": False}
     plotter = pv.Plotter(off_screen=True, **window)

@@ -52,6 +52,7 @@ def ball_of_wool(turns: int = 110, seed: int = 4) -> list[np.ndarray]:
 
 def main(folder: Path) -> None:
     """Write a page of knots at 300 dots per inch, one bit each, and a ball of wool three times."""
+    folder.mkdir(parents=True, exist_ok=True)
     knots = [torus_knot(2, 3), torus_knot(3, 7, tube=7.0), figure_eight(), torus_knot(2, 5, strands=7, tube=10.0)]
     page = pv.Plotter(off_screen=True, window_size=(1200, 320), shape=(1, len(knots)), border=False)
     page.set_background("white", all_renderers=True)

@@ -45,6 +45,7 @@ def show_tracts(plotter: pv.Plotter, tracts: Streamlines) -> None:
 
 def main(folder: Path) -> None:
     """Write one picture of four."""
+    folder.mkdir(parents=True, exist_ok=True)
     volume, brain = vessel_tree(144), brain_streamlines(2_500)
     chosen = [brain.groups[name] for name in ("callosum", "cingulum", "arcuate", "corona")]
     tracts = brain[np.sort(np.concatenate(chosen))]

@@ -73,6 +73,7 @@ def draw_glass(plotter: pv.Plotter, brain: RaycastVolume, tracts: Streamlines) -
 
 def main(folder: Path, source: Path | None) -> None:
     """Write one picture of both."""
+    folder.mkdir(parents=True, exist_ok=True)
     brain = made_up_brain() if source is None else as_raycast_volume(source)
     streamlines = brain_streamlines(12_000)
     chosen = np.concatenate([streamlines.groups[name] for name in ("callosum", "corona", "cingulum", "arcuate")])

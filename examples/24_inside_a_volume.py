@@ -92,6 +92,7 @@ def draw_inside(plotter: pv.Plotter, tree: RaycastVolume, path: np.ndarray, star
 
 def main(folder: Path) -> None:
     """Write one picture of the three."""
+    folder.mkdir(parents=True, exist_ok=True)
     head, tree = brain_like(192), vessel_tree(256)
     path = middle_of_vessel(tree)
     print(f"the vessel is followed over {np.linalg.norm(np.diff(path, axis=0), axis=1).sum():.0f} mm")

@@ -23,6 +23,7 @@ VOXEL = 1.5  # mm
 
 def main(folder: Path) -> None:
     """Write three maps as one picture, and one of them as a file."""
+    folder.mkdir(parents=True, exist_ok=True)
     fiblets = pvfiblets.compress(brain_streamlines(20_000, seed=2, fa=True), per_point=["fa"])
     counts = fiblets.density(VOXEL)
     directions = fiblets.density(like=counts, contrast="direction")

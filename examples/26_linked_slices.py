@@ -30,6 +30,7 @@ def made_up_head() -> nibabel.Nifti1Image:
 
 def main(folder: Path) -> None:
     """Write a picture of the workspace."""
+    folder.mkdir(parents=True, exist_ok=True)
     fiblets = pvfiblets.compress(brain_streamlines(20_000, seed=2))
     directions = fiblets.density(2.0, contrast="direction")
     counts = fiblets.density(like=directions)

@@ -35,6 +35,7 @@ def made_up_atlas(fiblets: pvfiblets.FibletSet) -> tuple[np.ndarray, np.ndarray]
 
 def main(folder: Path) -> None:
     """Write a picture of bundles and connections, one of numbers, and two tables."""
+    folder.mkdir(parents=True, exist_ok=True)
     fiblets = pvfiblets.compress(brain_streamlines(6000, seed=3, fa=True), per_point=["fa"])
     fiblets.groups.clear()
     clusters = fiblets.clusters(threshold=18.0)

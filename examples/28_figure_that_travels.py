@@ -1,6 +1,6 @@
 """
-A figure that travels
-=====================
+A figure as one HTML file
+=========================
 
 One HTML file with the streamlines in it, which any browser draws by itself: for reviewers, notebooks and phones.
 
@@ -18,6 +18,7 @@ from pvfiblets.synthetic import brain_streamlines
 
 def main(folder: Path) -> None:
     """Write the page, and the engine's picture of the same view."""
+    folder.mkdir(parents=True, exist_ok=True)
     fiblets = pvfiblets.compress(brain_streamlines(20_000, seed=2, fa=True), per_point=["fa"])
 
     plotter = pv.Plotter(off_screen=True, window_size=(900, 700))

@@ -44,11 +44,11 @@ def table() -> str:
     for drawable, settings in DRAWABLES.items():
         for name, one in settings.DECLARED.items():
             rows.setdefault(_row(name, one), {})[drawable] = _access(name, one, settings)
-    heads = ["setting", "default", "unit or choices", *DRAWABLES, "meaning"]
+    heads = ["setting", "default", "meaning", "unit or choices", *DRAWABLES]
     lines = [f"| {' | '.join(heads)} |", "|" + "---|" * len(heads)]
     names = list(dict.fromkeys(row[0] for row in rows))
     for (name, default, values, meaning), access in sorted(rows.items(), key=lambda item: names.index(item[0][0])):
-        cells = [name, default, values, *(access.get(drawable, "") for drawable in DRAWABLES), meaning]
+        cells = [name, default, meaning, values, *(access.get(drawable, "") for drawable in DRAWABLES)]
         lines.append(f"| {' | '.join(cells)} |")
     return HEAD + "\n".join(lines) + "\n"
 

@@ -117,7 +117,7 @@ def test_errors_are_one_sentence(folder, monkeypatch, capsys, arguments, message
 
 
 @pytest.mark.parametrize("arguments", [[], ["--voxel", "2", "--like", "a.nii"], ["--voxel", "-1"]])
-def test_a_grid_must_be_said_once(arguments, capsys):
+def test_a_grid_is_given_exactly_once(arguments, capsys):
     with pytest.raises(SystemExit) as stop:
         main(["density", "a.trk", "b.nii", *arguments])
     assert stop.value.code == 2

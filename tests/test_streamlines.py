@@ -235,7 +235,7 @@ def test_split_where_they_were(lines):
     assert kept.dropped == {NONFINITE: 5, CUT: 1}
 
 
-def test_compress_says_so_or_does_so(lines):
+def test_compress_treats_nan_as_chosen(lines):
     with pytest.raises(ValueError, match=r"point 1 is \[nan.*nan='drop' or nan='split'"):
         pvfiblets.compress(lines, nan="error")
     with pytest.raises(ValueError, match="nan is 'skip'; choose one of"):

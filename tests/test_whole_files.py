@@ -79,7 +79,7 @@ class Full:
 
 
 @pytest.mark.parametrize("suffix", OURS)
-def test_a_full_disk_is_told_with_what_is_free_and_leaves_the_old_file(lines, tmp_path, monkeypatch, suffix):
+def test_a_full_disk_is_reported_with_its_free_space_and_keeps_the_old_file(lines, tmp_path, monkeypatch, suffix):
     path = tmp_path / f"lines{suffix}"
     path.write_bytes(b"old")
     before = Path.open
@@ -110,7 +110,7 @@ def test_errors_of_other_files_stay_as_they_are(tmp_path):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no limit on the size of files")
 @pytest.mark.parametrize("name", ["a.trx", "a.tck", "a.fiblets"])
-def test_a_file_that_may_not_be_as_large_says_what_it_takes(name, tmp_path):
+def test_a_file_beyond_the_size_limit_reports_the_size_it_needs(name, tmp_path):
     """In a process of its own, whose files may have 64 kB."""
     code = """
 import resource, signal, sys

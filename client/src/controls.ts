@@ -140,7 +140,7 @@ export class Controls {
         }));
       }
     });
-    return group("Shown", ...rows);
+    return group("Layers", ...rows);
   }
 
   private views(): HTMLElement {
@@ -149,11 +149,11 @@ export class Controls {
       renderer.camera.lookAlong(direction, up, renderer.scene.bounds);
       renderer.change();
     }));
-    buttons.push(button("As at first", () => {
+    buttons.push(button("Reset", () => {
       Object.assign(renderer.camera.state, structuredClone(start));
       renderer.change();
     }));
-    buttons.push(button("Save picture", () => this.save()));
+    buttons.push(button("Save image", () => this.save()));
     return group("View", make("div", { class: "buttons" }, ...buttons));
   }
 
@@ -319,7 +319,7 @@ export class Controls {
       ),
       ...(region.ball
         ? [sized("Radius, mm", [0, 1, 2])]
-        : ["x", "y", "z"].map((axis, i) => sized(`Half of ${axis}, mm`, [i]))),
+        : ["x", "y", "z"].map((axis, i) => sized(`Half-width ${axis}, mm`, [i]))),
       make(
         "div",
         { class: "buttons" },

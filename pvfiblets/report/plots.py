@@ -15,7 +15,7 @@ from .dot_plot import in_rows
 from .record import Axes, Record, StudyResult
 from .report_file import Report
 
-__all__ = ["draw"]
+__all__ = ["draw", "in_panels"]
 
 COLUMNS = 3
 LONGEST_TITLE = 54  # letters that a panel is wide
@@ -33,7 +33,6 @@ def draw(report: Report, folder: Path) -> dict[str, list[tuple[str, str]]]:
     made: dict[str, list[tuple[str, str]]] = {}
     for study in report.studies:
         shown = [record for record in study.records if record.group]
-        colours = _assigned([record.method for record in study.records], COLOURS)
         for pair in study.axes:
             for group in dict.fromkeys(record.group for record in shown):
                 records = [record for record in shown if record.group == group and _points(record, pair)]
@@ -42,7 +41,7 @@ def draw(report: Report, folder: Path) -> dict[str, list[tuple[str, str]]]:
                     continue
                 if pair.alternatives:
                     shows = f"{pair.y_label} against {pair.x_label}: {group}"
-                    picture = _picture(study, records, pair, colours)
+                    picture = in_panels(study, records, pair)
                 else:
                     shows = f"{pair.x_label} and {pair.y_label} of each: {group}"
                     picture = in_rows(study, records, pair, _assigned([record.method for record in records], COLOURS))
@@ -66,16 +65,16 @@ def _assigned(names: Iterable[str], looks: Sequence[str]) -> dict[str, str]:
     return {name: looks[i % len(looks)] for i, name in enumerate(dict.fromkeys(names))}
 
 
-def _picture(study: StudyResult, records: list[Record], pair: Axes, colours: dict[str, str]) -> Any:
+def in_panels(study: StudyResult, records: list[Record], pair: Axes) -> Picture:
+    """Draw records of a study, with a panel for each data set."""
     sets = list(dict.fromkeys(record.data for record in records))
     methods = list(dict.fromkeys(record.method for record in study.records))
     settings = list(dict.fromkeys(record.setting for record in study.records))
     # A method has one colour in all pictures of a study, if there are enough of them; else one that is its own in each.
-    if len(methods) > len(COLOURS):
-        colours = _assigned([m for m in methods if any(record.method == m for record in records)], COLOURS)
+    of_methods = [name for name in methods if any(record.method == name for record in records)]
+    colours = _assigned(of_methods if len(methods) > len(COLOURS) else methods, COLOURS)
     markers = _assigned([s for s in settings if any(record.setting == s for record in records)], MARKERS)
     rows = -(-len(sets) // COLUMNS)
-    of_methods = [name for name in methods if any(record.method == name for record in records)]
     of_settings = [name for name in settings if any(record.setting == name for record in records)]
     handles = _legend(of_methods, of_settings, colours, markers, pair)
     columns = min(4, max(2, 2 * min(COLUMNS, len(sets))))

@@ -189,7 +189,7 @@ def test_a_late_part_leaves_the_picture_incomplete_and_the_next_goes_on(make, wh
     assert_alike(read(parts.render(CLOSE)), read(whole.render(CLOSE)))
 
 
-def test_a_changed_file_is_told(gl, client, brain, tmp_path):
+def test_a_changed_file_is_reported(gl, client, brain, tmp_path):
     path = tmp_path / "moved.fiblets"
     brain.save(path)
     parts = ClusterRenderer(gl, FibletSet.open(path), client)
@@ -322,7 +322,7 @@ def test_a_page_has_workers_draw(client, brain, tmp_path):
     _client_at.cache_clear()
 
 
-def test_an_address_where_nobody_answers_is_told(gl, brain, monkeypatch, capsys):
+def test_an_address_without_a_server_is_reported(gl, brain, monkeypatch, capsys):
     monkeypatch.setattr(cluster_renderer, "GRACE", 0.2)
     with pytest.raises(EngineError, match=r"no scheduler of dask answers at tcp://127\.0\.0\.1:9 .* dask scheduler"):
         ClusterRenderer(gl, brain, "tcp://127.0.0.1:9")

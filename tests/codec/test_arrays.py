@@ -156,7 +156,7 @@ def test_kernels_are_loaded_for_what_takes_longer(monkeypatch, points, spent, lo
     assert marked == (["coding"] if not small and not loaded else [])
 
 
-def test_compilation_is_told_and_waiting_is_not(caplog, monkeypatch):
+def test_compilation_is_reported_and_waiting_is_not(caplog, monkeypatch):
     from pvfiblets.codec import jit
 
     monkeypatch.setattr(jit, "NOTICED", 0.02)

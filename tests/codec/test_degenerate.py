@@ -82,7 +82,7 @@ NONSENSE = re.compile(r"\bnan\b|\binf\b|\bNone\b|e[-+][0-9]{3}|Traceback")
 @pytest.mark.few(4)
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
 @pytest.mark.parametrize("name", lines_of(np.float32))
-def test_a_degenerate_set_is_kept_within_its_promise_and_told_of(name, kind, tmp_path, capsys):
+def test_a_degenerate_set_keeps_its_error_bound_and_reports_it(name, kind, tmp_path, capsys):
     source, target, back = (tmp_path / part for part in ("a.trx", "a.fiblets", "b.trx"))
     formats.write(source, streamlines(name, kind))
     done = main(["convert", str(source), str(target), "--no-exact"])

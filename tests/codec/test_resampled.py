@@ -89,7 +89,7 @@ def test_steps_are_even_where_lines_are_smooth():
     assert counts.tolist() == (np.ceil(arcs.lengths() - 1e-6) + 1).tolist()  # a step apart, and the end: no corners
 
 
-def test_errors_beyond_the_promise_are_told_exactly():
+def test_errors_beyond_the_bound_are_reported_exactly():
     """Other lines than those that were compressed, farther away than the set promises."""
     lines = smooth(5, 120)
     fiblets = pf.compress(lines, step=2.0, max_error=0.05)

@@ -69,9 +69,6 @@ pvfiblets.write("brain.trk", brain_streamlines(400, seed=1, fa=True))
 """,
     "docs/exploring.md": BRAIN + """
 import numpy as np
-plotter = pv.Plotter(window_size=(900, 700))
-actor = plotter.add_fiblets("brain.trx", per_point=["fa"])
-plotter.show(auto_close=False)
 atlas_array, affine = np.arange(8.0**3).reshape(8, 8, 8).astype(int) % 20, np.diag([20.0, 20.0, 20.0, 1.0])
 triangulated = pv.Sphere(radius=12).triangulate()
 points, triangles = np.asarray(triangulated.points), triangulated.regular_faces

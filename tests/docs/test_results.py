@@ -1,4 +1,4 @@
-"""The frames, memory and load times on the page of results are the figures of the records that it links."""
+"""The figures on the page of results, and in the tables that its plots replace, are those of the records."""
 
 import json
 import re
@@ -6,14 +6,15 @@ from pathlib import Path
 
 import pytest
 
-FOLDER = Path(__file__).resolve().parents[2] / "docs" / "benchmarks"
-PAGE = (FOLDER / "README.md").read_text(encoding="utf-8")
-WAYS = ("polylines", "polylines-aliased", "tubes", "fiblets")
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+FOLDER = DOCS / "benchmarks"
+PAGE = FOLDER / "README.md"
 
 
-def rows(title):
-    """Return the cells of the table whose first column has a title."""
-    table = PAGE[PAGE.index(f"| {title}") :].split("\n\n", 1)[0]
+def rows(page, title):
+    """Return the cells of the table of a page whose first column has a title."""
+    text = page.read_text(encoding="utf-8")
+    table = text[text.index(f"| {title}") :].split("\n\n", 1)[0]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[2:]]
 
 
@@ -21,44 +22,77 @@ def figures(text):
     return [float(number.replace(",", "")) for number in re.findall(r"\d[\d,]*\.?\d*", text)]
 
 
+def record(name):
+    return json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+
+
 @pytest.fixture(scope="module")
-def lines():
-    results = json.loads((FOLDER / "lines-llvmpipe.json").read_text())["results"]
-    return {(one["way"], one["segments"]): one for one in results}
+def answers():
+    return dict(rows(PAGE, "question"))
 
 
-def test_frames_in_software_are_those_of_the_record(lines):
-    table = rows("segments | VTK lines, as `add_mesh` draws them")
-    assert len(table) == 5
-    for cells in table:
-        segments = int(figures(cells[0])[0])
-        for way, cell in zip(WAYS, cells[1:], strict=True):
-            recorded = lines.get((way, segments))
-            assert (recorded is None) == (cell == "")
-            if recorded is not None:
-                assert figures(cell) == [pytest.approx(1000.0 / recorded["ms_per_frame"], rel=0.03)]
+@pytest.fixture(scope="module")
+def ten_million():
+    """What the record says of 10 million segments, by way to draw them: fiblets, aliased lines, add_mesh's."""
+    results = {one["way"]: one for one in record("lines-llvmpipe")["results"] if one["segments"] == 10_038_457}
+    return [results[way] for way in ("fiblets", "polylines-aliased", "polylines")]
 
 
-def test_frames_on_the_card_are_those_of_the_record():
-    results = json.loads((FOLDER / "card-nvidia-h100-80gb-hbm3.json").read_text())["results"]
-    drawn = [one for one in results if one.get("pipeline") == "compute" and one.get("culling") == "two-phase"]
-    times = [one["ms"] for one in drawn if one.get("size") == [1920, 1080] and one.get("ms")]
-    for cells in rows("segments | ms a frame")[:4]:
-        (ms,), (rate,) = figures(cells[1]), figures(cells[2])
-        assert any(ms == pytest.approx(one, abs=0.06) for one in times)
-        assert rate == pytest.approx(1000.0 / ms, rel=0.02)
+@pytest.mark.parametrize(
+    ("question", "field", "scale"),
+    [
+        ("How fast, software OpenGL?", "ms_per_frame", 1.0),
+        ("How much memory?", "peak_memory_bytes", 1e-6),
+        ("How long to load?", "load_seconds", 1.0),
+    ],
+)
+def test_answers_for_ten_million_segments_are_those_of_the_record(answers, ten_million, question, field, scale):
+    written = [number for number in figures(answers[question]) if number != 10]
+    assert written == [pytest.approx(one[field] * scale, rel=0.03) for one in ten_million]
 
 
-def test_memory_and_load_times_are_those_of_the_record(lines):
-    table = {cells[0]: cells[1:] for cells in rows("| fiblets | VTK lines")}
-    ten = {way: lines[way, 10_038_457] for way in ("fiblets", "polylines", "polylines-aliased")}
-    gpu = [ten[way]["gpu_bytes_per_point"] for way in ("fiblets", "polylines")]
-    memory = [ten[way]["peak_memory_bytes"] / 1e6 for way in ("fiblets", "polylines", "polylines-aliased")]
-    load = [ten[way]["load_seconds"] for way in ("fiblets", "polylines", "polylines-aliased")]
-    for name, recorded in (
-        ("GPU bytes a point", gpu),
-        ("process memory at 10 million segments, MB", memory),
-        ("load 10 million segments, s", load),
-    ):
-        written = [number for cell in table[name] for number in figures(cell)]
-        assert written == [pytest.approx(one, rel=0.03) for one in recorded]
+def test_bytes_on_the_gpu_are_those_of_the_record(answers, ten_million):
+    bytes_per_point = [ten_million[way]["gpu_bytes_per_point"] for way in (0, 1)]
+    assert figures(answers["How large?"])[1:] == [pytest.approx(one, rel=0.01) for one in bytes_per_point]
+
+
+def test_frames_on_the_card_are_those_of_the_record(answers):
+    results = [one for one in record("card-nvidia-h100-80gb-hbm3")["results"] if one.get("ms")]
+    drawn = [one for one in results if one.get("pipeline") == "compute" and one["culling"] == "two-phase"]
+    lines = [one for one in results if one["kind"] == "raw lines"]
+    n, ms, more, longest, _, strips, strip_ms = figures(answers["How fast, graphics card?"].replace("H100", "100"))
+    asked = (n * 1e6, ms, drawn), (more * 1e9, longest, drawn), (strips * 1e6, strip_ms, lines)
+    for segments, time, members in asked:
+        nearest = min(members, key=lambda one: abs(one["segments"] - segments))
+        assert nearest["segments"] == pytest.approx(segments, rel=0.01)
+        assert nearest["ms"] == pytest.approx(time, abs=0.06)
+
+
+def test_pages_and_niivue_have_the_figures_of_the_record(answers):
+    found = record("other-viewers")["niivue"]
+    every = [dict(zip(found["columns"], row, strict=True)) for row in found["rows"]]
+    pages = {one["points"]: one for one in every if one["program"] == "page"}
+    niivue = {one["points"]: one for one in every if one["program"] == "NiiVue"}
+    ten = [one[10**7][column] for one in (pages, niivue) for column in ("page_mb", "first_frame_s")]
+    large, _, first, *others = figures(answers["How large is a page?"])
+    assert [large, first, *others] == ten
+    columns = {
+        "total bytes": "page_mb",
+        "seconds to the first frame": "first_frame_s",
+        "seconds to the finished frame": "finished_frame_s",
+        "milliseconds for a full-resolution frame": "full_frame_ms",
+        "milliseconds for an interactive frame": "interactive_frame_ms",
+    }
+    table = {cells[0]: cells[1:] for cells in rows(DOCS / "pages.md", "page, NiiVue, PyVista")}
+    for title, column in columns.items():
+        for points, cell in zip(pages, table[title], strict=True):
+            recorded = [one[column] for one in every if one["points"] == points and one[column] is not None]
+            written = [number for part in cell.split(", ") for number in figures(part)]
+            assert written == recorded, title
+
+
+def test_fury_has_the_figures_of_the_record():
+    table = {figures(cells[0])[0]: cells[1:] for cells in rows(DOCS / "comparison.md", "segments | FURY's lines")}
+    for segments, program, times in record("other-viewers")["fury"]["rows"]:
+        cell = table[segments][("FURY", "VTK lines, aliased", "fiblets").index(program)]
+        assert [figures(part)[0] for part in cell.split(", ")] == times

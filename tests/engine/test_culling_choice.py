@@ -66,7 +66,7 @@ def test_what_is_equal_stays(monkeypatch):
         assert choice.culling == first
 
 
-def test_a_change_of_what_is_seen_is_noticed():
+def test_a_change_of_the_visible_scene_is_noticed():
     clock = Pretended(2.0, 1.0)
     choice = CullingChoice(clock, True)
     flown(choice, clock, 1000)

@@ -61,7 +61,7 @@ def test_an_old_context_of_others_is_as_old_as_it_says(tmp_path, older_opengl):
         assert "no pipeline can draw fiblets on OpenGL 3.2" in said
 
 
-def test_a_vendor_is_taken_at_its_word_for_what_it_compiles(tmp_path, older_opengl):
+def test_a_vendor_keeps_the_features_that_it_compiles(tmp_path, older_opengl):
     """Extensions that are listed, but a language that is not compiled."""
     told, _, _ = drawn(tmp_path / "a.npy", "generous", **older_opengl("3.2") | {"MESA_GLSL_VERSION_OVERRIDE": "330"})
     assert told[:2] == ["320", "330"]

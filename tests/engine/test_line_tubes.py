@@ -354,7 +354,7 @@ def test_what_software_opengl_draws_otherwise(gl, fabricate, random_lines, camer
 
 
 @pytest.mark.parametrize("radius", [0.0, -1.0, np.nan, np.inf])
-def test_a_radius_that_is_none_is_told(radius):
+def test_a_bad_radius_is_reported(radius):
     with pytest.raises(ValueError, match="give a finite number of millimetres above 0"):
         FibletStyle(radius=radius)
 

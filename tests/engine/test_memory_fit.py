@@ -173,7 +173,7 @@ def test_more_fiblets_than_can_be_marked(gl, brain, monkeypatch):
 
 
 @pytest.mark.parametrize("failures", [1, 3])
-def test_a_driver_that_says_nothing_before_may_say_so_later(gl, brain, monkeypatch, failures):
+def test_a_driver_may_run_out_of_memory_only_while_uploading(gl, brain, monkeypatch, failures):
     """Memory that cannot be asked for beforehand: the share is halved until the driver takes it."""
     left = [failures]
     honest = upload.upload_chunk

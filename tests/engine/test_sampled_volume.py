@@ -241,7 +241,7 @@ def test_nonsense_is_refused(values, affine, message):
         VolumeSource(values, affine)
 
 
-def test_a_volume_too_large_for_the_driver_says_so(gl):
+def test_a_volume_too_large_for_the_driver_raises(gl):
     side = int(gl.info["GL_MAX_3D_TEXTURE_SIZE"]) + 1
     with pytest.raises(EngineError, match=f"{side} x 1 x 1 voxels"):
         VolumeTexture(gl, VolumeSource(np.zeros((side, 1, 1), np.uint8), np.eye(4)))

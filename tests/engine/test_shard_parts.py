@@ -181,7 +181,7 @@ def test_shards_that_are_here_before_their_threads_end_make_room_for_others(far)
     assert len(threads) == 4
 
 
-def test_a_shard_that_cannot_be_had_is_told(made, camera, far, monkeypatch):
+def test_an_unreachable_shard_is_reported(made, camera, far, monkeypatch):
     _, parts = made(far)
     store = far.shards._store
     parts.patience = 0.05

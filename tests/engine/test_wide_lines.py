@@ -46,7 +46,7 @@ def test_wide_lines_in_a_close_view(gl, fabricate, camera):
     assert near(draw(gl, fiblets, view, FibletStyle(9.0, tolerance=0.0)).drawn)[thin].all()
 
 
-def test_a_width_beyond_software_opengl_is_told(gl, fabricate, random_lines, camera):
+def test_a_width_beyond_software_opengl_is_reported(gl, fabricate, random_lines, camera):
     if "llvmpipe" not in gl.info["GL_RENDERER"]:
         pytest.skip("hardware draws any width")
     with pytest.raises(EngineError, match="at most 100"):

@@ -161,7 +161,7 @@ def test_trx_python_reads_a_file_of_names_with_dots(tmp_path):
     found.close()
 
 
-def test_a_trk_file_that_nibabel_would_refuse_is_told_of(tmp_path):
+def test_a_trk_file_that_nibabel_refuses_warns(tmp_path):
     lines = Streamlines(POINTS, OFFSETS, per_streamline={"w": np.arange(3.0)})
     with pytest.warns(UserWarning, match=r"1 streamlines have no points.*counts > 0"):
         formats.write(tmp_path / "a.trk", lines)

@@ -172,7 +172,7 @@ def test_a_long_line_is_converted_and_measured_as_it_is_otherwise(tmp_path, requ
 
 
 @pytest.mark.parametrize("cut", [4, 5000])
-def test_a_long_line_that_is_cut_short_is_told(cut, tmp_path, short_memory) -> None:
+def test_a_truncated_long_line_is_reported(cut, tmp_path, short_memory) -> None:
     whole = lines(SETS["even"])
     for path in (FILES["tck"](whole[:2], tmp_path), FILES["trk"](whole[:2], tmp_path)):
         path.write_bytes(path.read_bytes()[:-cut])

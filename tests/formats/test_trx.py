@@ -224,7 +224,7 @@ def test_contradictions(entries, header, words, tmp_path):
     ],
 )
 @pytest.mark.parametrize("method", [ZIP_STORED, ZIP_DEFLATED])
-def test_a_header_that_is_one_off_is_told_and_the_arrays_are_believed(entries, header, method, tmp_path):
+def test_a_header_off_by_one_warns_and_the_arrays_count(entries, header, method, tmp_path):
     path = packed(tmp_path / "a.trx", entries, header, method)
     for ask in (formats.read, lambda path: Streamlines.concatenate(formats.iter_chunks(path, 3))):
         with pytest.warns(UserWarning, match=r"a.trx: NB_\w+ is \d, and all arrays are of \d, which is believed"):

@@ -179,7 +179,7 @@ def test_a_failing_draw_is_raised_by_the_caller(make_plotter, lines, tools, monk
     assert np.array_equal(tools.picture(plotter, mapper), whole)
 
 
-def test_a_mapper_of_two_actors_says_so(make_plotter, lines):
+def test_a_mapper_of_two_actors_raises(make_plotter, lines):
     mapper, actor = lines.actor()
     twin = vtkActor()
     twin.ShallowCopy(actor)

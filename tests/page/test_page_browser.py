@@ -162,7 +162,7 @@ def test_page_that_may_not_read_its_picture_shows_it_and_says_why_clicks_tell_no
     said = "This browser does not let the page read its own picture, unless you allow it: clicks pick nothing."
     assert page.page.locator("#status").inner_text() == said
     page.page.click("#panel summary")
-    page.page.get_by_role("button", name="Save picture").click()
+    page.page.get_by_role("button", name="Save image").click()
     until(page.page, "document.getElementById('status').textContent.endsWith('a picture cannot be saved.')")
 
 
@@ -199,7 +199,7 @@ def test_a_click_tells_the_streamline_and_balls_and_boxes_there_choose_with_swit
     page.page.get_by_role("button", name="Add a box").click()  # around the picked place: no line passes through both
     assert status.inner_text() == "0 streamlines are shown"
     box = page.page.locator("details", has=page.page.locator("summary", has_text=re.compile("^Box 2$"))).last
-    box.get_by_label("Half of y, mm").fill("20.5")
+    box.get_by_label("Half-width y, mm").fill("20.5")
     until(page.page, "document.getElementById('status').textContent.startsWith('1 ')")
     ball.get_by_role("button", name="Remove ball 1").click()
     assert status.inner_text() == "2 streamlines are shown"

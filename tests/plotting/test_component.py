@@ -231,7 +231,7 @@ def test_each_subplot_has_its_own_actors(kind):
 
 
 @of_lines
-def test_adding_to_a_shown_plotter_renders_unless_told_not_to(plotter, kind):
+def test_adding_to_a_shown_plotter_renders_unless_render_is_false(plotter, kind):
     plotter.camera_position = [(0, -60, 0), (0, 0, 0), (0, 0, 1)]
     plotter.show(auto_close=False)
     add(plotter, kind, render=False)

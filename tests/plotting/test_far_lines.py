@@ -22,7 +22,7 @@ def draw(plotter: pf.Plotter, kind: str, far: float) -> None:
 
 
 @pytest.mark.parametrize("kind", ["add_fiblets", "add_halo_lines", "add_spline_tubes"])
-def test_a_line_so_far_away_that_the_others_show_steps_is_told_once(plotter: pf.Plotter, kind: str) -> None:
+def test_a_far_line_that_coarsens_the_others_warns_once(plotter: pf.Plotter, kind: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         draw(plotter, kind, 10.0)

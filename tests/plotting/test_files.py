@@ -156,7 +156,7 @@ def test_a_volume_colours_the_same_by_image_and_by_path(saved, plotter, three_li
     assert len(np.unique(pictures[0].reshape(-1, 3), axis=0)) > 5
 
 
-def test_a_volume_elsewhere_is_told_with_both_bounds(plotter, three_lines):
+def test_a_volume_elsewhere_warns_with_both_bounds(plotter, three_lines):
     far = pv.ImageData(dimensions=(4, 4, 4), origin=(100, 0, 0))
     far["fa"] = np.arange(64.0)
     told = r"no streamline meets the image 'fa'.* x 99\.5 to 103\.5, .* x -10 to 10, .*read_volume"
@@ -256,7 +256,7 @@ def test_a_region_is_where_the_mesh_says(ball):
     np.testing.assert_allclose(as_region(ball).points.mean(axis=0), (30, 20, 0), atol=0.5)
 
 
-def test_a_file_without_points_is_told(tmp_path):
+def test_a_file_without_points_is_reported(tmp_path):
     pv.PolyData().save(tmp_path / "a.vtp")
     with pytest.raises(ValueError, match=r"a\.vtp has no points to draw; check the program that wrote it"):
         read_mesh(tmp_path / "a.vtp")

@@ -111,7 +111,7 @@ def test_depth_cueing_by_width_is_live(stage):
     assert each() == near(1, 2)
 
 
-def test_ends_taper_as_they_are_told(stage):
+def test_ends_taper_by_their_settings(stage):
     actor = add(stage)
     assert widths(stage, -14.5) == near(2, 6)
     assert actor.tapering == (0, 0.2)

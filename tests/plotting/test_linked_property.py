@@ -214,7 +214,7 @@ def test_volumes(plotter, mode):
 
 
 @pytest.mark.parametrize(("add", "instead"), [("add_spline_tubes", "radius in mm"), ("add_halo_lines", "in mm")])
-def test_a_width_that_is_not_drawn_is_told(plotter, three_lines, add, instead):
+def test_an_undrawable_width_warns(plotter, three_lines, add, instead):
     actor = getattr(plotter, add)(three_lines)
     with pytest.warns(UserWarning, match=f"prop.line_width changes nothing here: .*{instead}"):
         actor.prop.line_width = 5

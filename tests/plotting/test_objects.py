@@ -71,7 +71,7 @@ def test_datasets_are_the_lines_that_are_drawn(plotter, three_lines):
 
 
 @pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines", "add_raycast_volume"])
-def test_changes_in_place_are_told_once(plotter, three_lines, add):
+def test_changes_in_place_warn_once(plotter, three_lines, add):
     mesh = three_lines.to_polydata()
     if add == "add_raycast_volume":
         mesh = pv.ImageData(dimensions=(4, 4, 4))

@@ -48,7 +48,7 @@ def test_asking_changes_nothing_in_the_picture(plotter, three_lines, when):
     reference.close()
 
 
-def test_a_closed_plotter_says_so(three_lines):
+def test_a_closed_plotter_raises(three_lines):
     plotter = pv.Plotter(off_screen=True)
     component = plotter.fiblets
     plotter.close()

@@ -99,7 +99,7 @@ def test_layers_of_a_volumes_values_by_older_opengl(older_opengl, version, pipel
 
 
 @pytest.mark.parametrize("samples", [0, 4])
-def test_depth_peeling_that_fails_under_multi_sampling_is_told_once(three_lines, colours_in, samples):
+def test_depth_peeling_that_fails_under_multi_sampling_warns_once(three_lines, colours_in, samples):
     """The same window loses a translucent mesh."""
     found = {}
     for what in ("mesh", "fiblets"):

@@ -31,7 +31,7 @@ def test_curvature_of_arcs_is_that_of_their_circle(step: float, exact: bool) -> 
     np.testing.assert_allclose(np.median(measure(made, "curvature").array()), 1 / RADIUS, rtol=0.02)
 
 
-def test_curvature_that_a_coarse_promise_hides_is_told_with_the_one_that_shows_it() -> None:
+def test_curvature_hidden_by_a_coarse_bound_warns_with_the_bound_that_shows_it() -> None:
     coarse = pf.compress(arcs(0.1), max_error=0.5)
     with pytest.warns(UserWarning, match=r"points may be 0\.5 mm off.*max_error=0\.01, or exact"):
         table(coarse)

@@ -507,7 +507,7 @@ def test_an_image_has_its_mean_in_voxels_as_an_array_of_its_values_has():
         np.testing.assert_allclose(pf.density(source, 14.0, contrast=image).values, wanted.values, atol=1e-5)
 
 
-def test_damaged_images_are_told(tmp_path):
+def test_damaged_images_are_reported(tmp_path):
     path = tmp_path / "a.nii"
     path.write_bytes(b"no image")
     with pytest.raises(pf.FormatError, match="a whole NIfTI or MGH image"):

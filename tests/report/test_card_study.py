@@ -204,7 +204,7 @@ def test_the_script_gives_a_card_eight_minutes_unless_told_otherwise(tmp_path):
     assert done.stdout == f"-m pvfiblets report --only card -o {tmp_path / 'out'} --minutes 8 --quick\n"
 
 
-def test_a_form_that_was_refused_is_told(gl, monkeypatch):
+def test_a_refused_form_is_reported(gl, monkeypatch):
     """The pipeline falls back by itself: a record must not show one extension's time for another's."""
     cell = {**BRAIN, "pipeline": "mesh", "but": f", {card.MESH_EXT}"}
     row = {"passes": {}, "steady": True, "before": {}, "after": {"clocks.sm": 1980.0}, "in_flight": 0.1,

@@ -68,7 +68,7 @@ def test_what_time_did_not_suffice_for_is_named(gl, small):
     assert "real files" in {item.what for item in left}
 
 
-def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path, monkeypatch):
+def test_only_the_largest_files_are_measured_and_the_rest_is_reported(gl, small, tmp_path, monkeypatch):
     monkeypatch.setattr(culling, "QUICK_FLIGHTS", ())
     monkeypatch.setattr(culling, "variants", lambda quick: [])
     for name in ("a", "b"):

@@ -87,7 +87,7 @@ def test_what_time_did_not_suffice_for_is_named(gl, small):
     assert late[1:3] == ["crossings: everything", "brain, 0.5 mm: everything"]
 
 
-def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path):
+def test_only_the_largest_files_are_measured_and_the_rest_is_reported(gl, small, tmp_path):
     for name in ("a", "b"):
         formats.write(tmp_path / f"{name}.tck", data_sets.synthetic_tracking(0.5, False, 300, 0))
     left = []

@@ -12,7 +12,7 @@ from .little import little
 
 
 @pytest.mark.more
-def test_answers_are_those_of_the_references(monkeypatch):
+def test_results_equal_the_references(monkeypatch):
     monkeypatch.setattr(query, "QUICK_STREAMLINES", (300,))
     left = []
     records = list(query.STUDY.run(little(left_out=left)))

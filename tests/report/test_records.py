@@ -336,7 +336,7 @@ def test_no_two_methods_of_a_picture_have_one_colour_and_its_titles_fit():
     ]  # fmt: skip
     pair = Axes("a", "costs/size", "errors/max", "bytes", "mm")
     study = StudyResult("x", "X", "", [], [pair], records)
-    picture = plots._picture(study, records[18:], pair, dict.fromkeys((f"method {k}" for k in range(24)), "black"))
+    picture = plots.in_panels(study, records[18:], pair)
     marks = [line for line in picture.axes[0].get_lines() if len(line.get_xdata()) == 1]
     looks = {(line.get_color(), line.get_marker()) for line in marks}
     assert len({colour for colour, _ in looks}) == len({marker for _, marker in looks}) == 12

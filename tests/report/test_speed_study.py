@@ -100,7 +100,7 @@ def test_what_a_process_dies_of_is_a_row_and_the_next_cell_has_another(tmp_path)
     ]  # fmt: skip
 
 
-def test_data_that_cannot_be_made_is_told(tmp_path):
+def test_impossible_data_is_reported(tmp_path):
     (tmp_path / "a file").write_text("")
     left = []
     cell = {**CELLS[0], "folder": str(tmp_path / "a file")}

@@ -39,7 +39,7 @@ def result(monkeypatch):
     return one_study("stability", Options(quick=True, log=lambda line: None))
 
 
-def test_cases_that_fail_and_those_that_cannot_be_run_are_told(result):
+def test_failed_and_unrunnable_cases_are_reported(result):
     assert [case.held for case in result.cases] == [True, False, False, False]
     assert "math domain error" in result.cases[3].note
     assert math.isnan(result.cases[3].measured.value)
@@ -70,7 +70,7 @@ def test_reports_of_before_there_were_cases_are_read(tmp_path):
     assert Report.load(tmp_path).studies[0].cases == []
 
 
-def test_a_budget_that_is_used_up_is_told(monkeypatch):
+def test_an_exhausted_budget_is_reported(monkeypatch):
     monkeypatch.setattr(study, "all_cases", lambda: list(some_cases())[:2])
     monkeypatch.setattr(study, "drawing_context", no_context)
     clock = iter([0.0, 0.0, 99.0, 99.0, 99.0, 99.0]).__next__
@@ -79,7 +79,7 @@ def test_a_budget_that_is_used_up_is_told(monkeypatch):
     assert [item.what for item in result.left_out if "time" in item.reason] == ["roots: 1 cases"]
 
 
-def test_cases_budgets_and_refusals_are_told():
+def test_cases_budgets_and_refusals_are_reported():
     some = [Case(system, name, "", "", len, long=name == "long") for system in "ab" for name in ("long", "x", "y")]
     assert [case.system + case.name for case in study.in_turn(some)] == ["ax", "bx", "ay", "by", "along", "blong"]
     some = [Outcome(1.0, 2.0, "mm"), Outcome(math.nan, 2.0, "mm"), Outcome(3.0, 2.0, "mm")]

@@ -375,7 +375,7 @@ def test_bare_numbers(tmp_path, name):
     np.testing.assert_array_equal(small.spacing, SPACING)
 
 
-def test_bare_numbers_of_which_too_little_is_said(tmp_path):
+def test_bare_numbers_need_a_valid_shape_and_type(tmp_path):
     path = tmp_path / "a.raw"
     path.write_bytes(bytes(60))
     with pytest.raises(ValueError, match=r"a.raw has none of the suffixes .* of bare numbers say shape=\(nx, ny, nz\)"):

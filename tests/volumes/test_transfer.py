@@ -27,7 +27,7 @@ def test_values_are_looked_up_linearly():
     np.testing.assert_array_equal(transfer.colour(values), transfer.lookup(values)[:, :3])
 
 
-def test_a_unit_is_as_opaque_as_the_table_says():
+def test_a_unit_length_has_the_opacity_of_the_table():
     for unit in (1e-3, 1.0, 40.0):
         transfer = Transfer(table(6), (0.0, 1.0), unit)
         values = np.linspace(0.0, 1.0, 57)

@@ -164,7 +164,7 @@ def chromium_processes():
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
-def test_a_dead_session_says_so_at_once_and_is_restored(visit):
+def test_a_dead_session_is_reported_at_once_and_restored(visit):
     here = visit("lines.fiblets", opened=False)
     (own,) = (Path(file).parent for file in map(os.readlink, Path(f"/proc/{here.served.process.pid}/fd").iterdir())
               if "pvfiblets-serve-" in file and file.endswith("/lock"))  # fmt: skip

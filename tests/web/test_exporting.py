@@ -253,7 +253,7 @@ def test_values_of_other_files_go_with_the_points_of_the_source(many, folder):
 
 
 @pytest.mark.parametrize("change", ["gone", "other"])
-def test_a_source_that_is_another_now_is_told_and_not_read(many, folder, change):
+def test_a_replaced_source_is_reported_and_not_read(many, folder, change):
     desk, walks = many
     if change == "gone":
         (folder / "walks.trk").unlink()

@@ -41,7 +41,7 @@ def parcels():
     return np.where(voxel < 4, 3, np.where(voxel < 8, 5, 0))
 
 
-def test_a_matrix_is_put_together_and_told(desk):
+def test_a_matrix_is_computed_and_reported(desk):
     told = make(desk)
     back, front = int((parcels() == 3).sum()), int((parcels() == 5).sum())
     assert told["n"] == 2

@@ -173,7 +173,7 @@ async def _ending(server, browser):
 
 
 @pytest.mark.more
-def test_a_session_that_cannot_have_what_it_needs_says_so(tmp_path):
+def test_a_session_beyond_its_resources_is_reported(tmp_path):
     async def test():
         server = FrontServer(Options(port=0, root=str(tmp_path), memory=300 << 20), WORKER)
         try:

@@ -456,7 +456,7 @@ def move(stream):
         stream.on_interaction("", {"type": kind, "x": x, "y": 50, "w": 200, "h": 120, **keys})
 
 
-def test_a_whole_picture_is_given_up_when_somebody_acts_and_comes_later(pieced, monkeypatch):
+def test_a_full_resolution_frame_is_dropped_on_input_and_drawn_later(pieced, monkeypatch):
     plotter, stream = pieced
     streamer = Streamer()
     stream.warm()

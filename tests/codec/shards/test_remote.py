@@ -139,7 +139,7 @@ def test_a_server_without_ranges(url, server, cache, whole, monkeypatch):
     assert server.asked.count("/a.fiblets/000000.fiblets") == 1
 
 
-def test_a_lost_connection_is_told_and_tried_again(url, server, cache, whole, monkeypatch):
+def test_a_lost_connection_is_reported_and_retried(url, server, cache, whole, monkeypatch):
     monkeypatch.setattr(store, "PIECE", 2000)
     shards = pf.ShardedSet.open(url, cache=cache)
     server.lose = 3

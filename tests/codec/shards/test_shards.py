@@ -190,7 +190,7 @@ def test_sets_of_nothing(streamlines, tmp_path):
         assert (len(back), back.n_points) == (len(lines), lines.n_points)
 
 
-def test_damage_is_told(sharded):
+def test_damage_is_reported(sharded):
     with pytest.raises(pf.FormatError, match=r"no manifest\.json"):
         pf.FibletSet.open(sharded.parent)
     path = sharded / "000001.fiblets"

@@ -137,7 +137,7 @@ def test_clusters_are_limited_and_sorted_and_become_groups(lines):
         (lambda f: f.similar(np.zeros((0, 3))), "without points"),
     ],
 )
-def test_bad_numbers_are_told(lines, ask, says):
+def test_bad_numbers_are_reported(lines, ask, says):
     with pytest.raises(ValueError, match=says):
         ask(compress(Streamlines.from_list(lines[:9])))
 

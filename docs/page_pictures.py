@@ -1,0 +1,87 @@
+"""Makes the pictures of how-to pages from the pages' own programs: ``python docs/page_pictures.py [PICTURE…]``.
+
+A larger brain takes the place of the tests' small one. The scene of docs/howto.md is of real data, in the folder that
+``PVFIBLETS_DATA`` names, or in ``../shared/data``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from PIL import Image, ImageChops
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "docs")]
+
+from pages import blocks, program  # noqa: E402 - the programs that the tests run
+
+from tests.page.conftest import WEBGL  # noqa: E402 - the tests' way to open a page
+from tests.page.pages import Page  # noqa: E402
+from tests.web.browsing import FLAGS, launched  # noqa: E402
+
+DATA = Path(os.environ.get("PVFIBLETS_DATA", ROOT.parent / "shared" / "data"))
+QUALITY, MARGIN = 88, 30
+ENVIRONMENT = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow", "PYVISTA_OFF_SCREEN": "true"} | os.environ
+
+
+def run(page: str, folder: Path) -> None:
+    """Run all of a page in a folder."""
+    text = program(page).replace("brain_streamlines(400,", "brain_streamlines(20_000,")
+    text = text.replace("import pyvista\npyvista.global_theme.window_size = (512, 384)\n", "")
+    (folder / "page.py").write_text(text, encoding="utf-8")
+    subprocess.run([sys.executable, "page.py"], cwd=folder, check=True, env=ENVIRONMENT)
+
+
+def shards(folder: Path) -> Image.Image:
+    """The shards of a set, each in a colour."""
+    run("docs/shards.md", folder)
+    return Image.open(folder / "shards.png")
+
+
+def page(folder: Path) -> Image.Image:
+    """An exported page in the browser."""
+    run("docs/pages.md", folder)
+    with launched([*(flag for flag in FLAGS if flag != "--disable-gpu"), *WEBGL]) as browser:
+        opened = Page(browser, folder / "figure.html", size=(1000, 720))
+        opened.page.locator("#panel > summary").click()
+        opened.page.get_by_role("button", name="Left").click()
+        opened.settled()
+        opened.page.screenshot(path=folder / "page.png")
+    return Image.open(folder / "page.png")
+
+
+def scene(folder: Path) -> Image.Image:
+    """The scene that a command renders, of real data in place of the files that the page names."""
+    files = {"brain.fiblets": "wholebrain_eudx_0.5mm_fifth.tck", "t1.nii.gz": "tractseg_FA.nii.gz"}
+    (text,) = (text for _, text in blocks(HERE / "howto.md") if "half.png" in text)
+    command = shlex.split(text.replace("\\\n", " ").replace("values=60", "values=0.15"))
+    command = [str(DATA / files[word]) if word in files else word for word in command]
+    subprocess.run([sys.executable, "-m", *command], cwd=folder, check=True, env=ENVIRONMENT)
+    picture = Image.open(folder / "half.png").convert("RGB")
+    left, top, right, bottom = ImageChops.difference(picture, Image.new("RGB", picture.size)).getbbox() or (0, 0, 1, 1)
+    return picture.crop((left - MARGIN, top - MARGIN, right + MARGIN, bottom + MARGIN))
+
+
+PICTURES = {one.__name__: one for one in (shards, page, scene)}
+
+
+def main() -> None:
+    """Make the named pictures."""
+    parser = argparse.ArgumentParser(description=__doc__.partition(":")[0] + ".")
+    parser.add_argument("picture", nargs="*", metavar="PICTURE", choices=[[], *PICTURES], help=", ".join(PICTURES))
+    for name in parser.parse_args().picture or PICTURES:
+        with tempfile.TemporaryDirectory() as folder:
+            target = HERE / "pictures" / f"{name}.jpg"
+            PICTURES[name](Path(folder)).convert("RGB").save(target, quality=QUALITY, optimize=True)
+            print(target)
+
+
+if __name__ == "__main__":
+    main()
