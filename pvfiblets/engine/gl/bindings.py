@@ -107,7 +107,7 @@ def together(*scopes: Scope) -> None:
 
 
 def _storage(name: str, **numbers: int) -> Scope:
-    return Scope(name, numbers, first=0, last=8)  # the ninth only where drivers have it
+    return Scope(name, numbers, first=0, last=9)  # more than eight only where drivers have them
 
 
 # Texture units, shared by drawables.
@@ -196,7 +196,7 @@ together(VOLUMES, VOLUME_OCCLUSION, REGIONS)
 
 STORAGE = _storage(
     "fiblets' records", anchors=0, decoding=1, codes=2, bounds=3, pages=4, visibility_bits=5, anchors_low=6, values=7,
-    nearest=8,
+    nearest=8, rotations=9,
 )  # fmt: skip
 """Storage buffers of a chunk and of a picture. Passes that need no bits or no values bind their own buffers there."""
 

@@ -50,7 +50,7 @@ from ...errors import EngineError
 from ...gl.bindings import CLUSTER_STORAGE, CULLING, IMAGES, STORAGE
 from ...gl.gl_version import version_of
 from ...gl.moderngl_extras import GLExtras
-from ...gl.passes import GROUP_SIZE, dispatch, is_software
+from ...gl.passes import GROUP_SIZE, dispatch, has_storage, is_software
 from ...gl.program_uniforms import set_uniforms
 from ...gl.shaders import EXTENDED, Programs
 from ...pieces import Pieces, finish
@@ -83,6 +83,10 @@ hide most of the other fiblets: of 7.4 million, 1.5 million are drawn instead of
 
 INT64_EXTENSIONS = "GL_NV_shader_atomic_int64", "GL_ARB_gpu_shader_int64"
 """For the least of words that hold depth and fiblet."""
+
+CARD_FORMS: Sequence[str] = ("STORED_ROTATIONS",)
+SOFTWARE_FORMS: Sequence[str] = ()
+"""Features of all programs on graphics cards, and of software OpenGL, which they slow down."""
 
 READ_LISTS = True
 """Whether software OpenGL compiles programs of classes when they first have fiblets."""
@@ -159,6 +163,9 @@ class ComputePipeline:
         self._gl = GLExtras(ctx)
         self._software = is_software(ctx)
         self._int64 = ("INT64_ATOMICS",) if _has_int64_atomics(ctx) else ()
+        self._forms = SOFTWARE_FORMS if self._software else CARD_FORMS
+        if not has_storage(ctx, "rotations"):
+            self._forms = [form for form in self._forms if form != "STORED_ROTATIONS"]
         self._shares = [(0, MAX_POINTS)]
         self._raster: GeometryPipeline | None = None
         self.planned = False
@@ -338,7 +345,7 @@ class ComputePipeline:
         return [*request.decoding, *request.detail, *request.planes, *request.tubes, *request.kept.culling, *one]
 
     def _program(self, stage: str, features: Sequence[str]) -> moderngl.ComputeShader:
-        return self._programs.compute(f"fiblets/compute/{stage}.comp", features)
+        return self._programs.compute(f"fiblets/compute/{stage}.comp", [*features, *self._forms])
 
     def _barrier(self) -> None:
         self._ctx.memory_barrier(
@@ -383,7 +390,7 @@ class ComputePipeline:
         looks = (request.occlusion.feature,) if request.occlusion is not None and self._tests_segments(request) else ()
         classes = [(part, [*features, *self._int64, *looks]) for part, features in request.classes(one=self._one_class)]
         name = f"fiblets/compute/{stage}.comp"
-        made = all(self._programs.has_compute(name, each) for _, each in classes)
+        made = all(self._programs.has_compute(name, [*each, *self._forms]) for _, each in classes)
         if made or not (READ_LISTS and self._software and self._marks):
             return classes
         self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
@@ -571,4 +578,4 @@ def _has_int64_atomics(ctx: moderngl.Context) -> bool:
     """Whether shaders take the least of 64-bit words in a storage buffer, and there is a binding left for it."""
     if version_of(ctx) < EXTENDED or not set(INT64_EXTENSIONS) <= set(ctx.extensions):
         return False
-    return GLExtras(ctx).get_integer("GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS") > STORAGE["nearest"]
+    return has_storage(ctx, "nearest")
