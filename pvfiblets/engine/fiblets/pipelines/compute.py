@@ -84,7 +84,7 @@ hide most of the other fiblets: of 7.4 million, 1.5 million are drawn instead of
 INT64_EXTENSIONS = "GL_NV_shader_atomic_int64", "GL_ARB_gpu_shader_int64"
 """For the least of words that hold depth and fiblet."""
 
-CARD_FORMS: Sequence[str] = ("STORED_ROTATIONS",)
+CARD_FORMS: Sequence[str] = ("STORED_ROTATIONS", "PER_FIBLET")
 SOFTWARE_FORMS: Sequence[str] = ()
 """Features of all programs on graphics cards, and of software OpenGL, which they slow down."""
 
@@ -509,8 +509,10 @@ class ComputePipeline:
         looks: bool = False,
         **uniforms: object,
     ) -> Generator[None, None, None]:
-        """Run a pass of one invocation for 32 fiblets, which may look at the occlusion's texture."""
+        """Run a pass over all fiblets (``by_word.glsl``), which may look at the occlusion's texture."""
         program = self._program(stage, features)
+        apart = "PER_FIBLET" in self._forms and "CLUSTERS" not in features
+        words = GROUP_WORDS if apart else GROUP_SIZE  # of a work group
 
         def tell() -> None:
             request.kept.bind(program)
@@ -522,7 +524,7 @@ class ComputePipeline:
         for index, chunk in enumerate(request.chunks):
             self._bind_chunk(index, request)
             set_uniforms(program, slots=self._marks[index].slots)
-            groups = -(-chunk.n_fiblets // (32 * GROUP_SIZE))
+            groups = -(-chunk.n_fiblets // (32 * words))
             if pieces is None:
                 dispatch(program, groups, self._max_groups)
                 continue
