@@ -58,6 +58,7 @@ FEATURES: dict[str, str] = {
     "CULL_COVERAGE": "fiblets hidden behind a coverage buffer",
     "INT64_ATOMICS": "depth and fiblet in one word of 64 bits",
     "PER_FIBLET": "fiblets tested by an invocation each, not 32 by one",
+    "COVER_APART": "pixels of thin lines shared by the invocations of a work group",
     "STORED_ROTATIONS": "rotations of direction codes in a storage buffer, not in a uniform block",
     "SUBGROUPS": "counting across invocations by the driver's own operations",
     "PER_PRIMITIVE": "segments handed to the fragments by a mesh stage",

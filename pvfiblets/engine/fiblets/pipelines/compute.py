@@ -84,7 +84,7 @@ hide most of the other fiblets: of 7.4 million, 1.5 million are drawn instead of
 INT64_EXTENSIONS = "GL_NV_shader_atomic_int64", "GL_ARB_gpu_shader_int64"
 """For the least of words that hold depth and fiblet."""
 
-CARD_FORMS: Sequence[str] = ("STORED_ROTATIONS", "PER_FIBLET")
+CARD_FORMS: Sequence[str] = ("STORED_ROTATIONS", "PER_FIBLET", "COVER_APART")
 SOFTWARE_FORMS: Sequence[str] = ()
 """Features of all programs on graphics cards, and of software OpenGL, which they slow down."""
 
