@@ -1,5 +1,6 @@
-// Lists the clusters of a chunk that may show: those whose box lies in the view volume and is not hidden behind a depth pyramid,
-// the last picture's or this one's (culling/hidden.glsl has the test of a capsule, by the same symbols).
+// Lists the clusters of a chunk that may show: those whose box lies in the view volume, not wholly beyond the caller's planes or outside
+// the caller's region, and not hidden behind a depth pyramid, the last picture's or this one's (culling/hidden.glsl has the test of a
+// capsule, by the same symbols).
 //
 // A cluster is {{ cluster_size }} fiblets that lie near each other (pvfiblets/engine/fiblets/data/clusters.py). One invocation per cluster.
 //
@@ -10,6 +11,7 @@ layout(local_size_x = {{ group_size }}) in;
 
 #include "culling/hidden.glsl"
 #include "culling/frustum.glsl"
+#include "culling/cut.glsl"
 #include "frame/groups.glsl"
 #include "fiblets/compute/visibility_bits.glsl"
 #include "fiblets/compute/claims.glsl"
@@ -48,6 +50,20 @@ bool beyond_planes(Box box) {
     return outside;
 }
 
+bool cut_away(Box box) {
+    bool away = false;
+#if FEATURE_CLIP_PLANES
+    for (int plane = 0; plane < clip_plane_count; ++plane) {
+        away = away || clip_height_of(plane, box.middle) + clip_rounding < -dot(abs(clip_planes[plane].xyz), box.reach);
+    }
+#endif
+#if FEATURE_CLIP_REGION
+    float ball = length(box.reach);
+    away = away || region_of_lines(box.middle, box.middle, ball, ball) < 0;
+#endif
+    return away;
+}
+
 bool box_hidden(Box box) {
     vec4 middle = to_homogeneous(box.middle);
     vec4 x = window_from_local[0] * box.reach.x, y = window_from_local[1] * box.reach.y, z = window_from_local[2] * box.reach.z;
@@ -83,7 +99,7 @@ void main() {
     bool left = false;
     if (cluster < cluster_count()) {
         Box box = box_of(cluster);
-        left = !beyond_planes(box) && !box_hidden(box);
+        left = !beyond_planes(box) && !cut_away(box) && !box_hidden(box);
     }
     uint place = left ? atomicAdd(count, 1u) : 0u;
     barrier();

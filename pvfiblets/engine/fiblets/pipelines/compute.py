@@ -483,7 +483,11 @@ class ComputePipeline:
     ) -> Generator[None, None, None]:
         """Put the fiblets of clusters that a pyramid does not hide into a round, as a stage wants them."""
         assert request.occlusion is not None
-        clusters = self._program("clusters", [*request.decoding, *request.tubes, request.occlusion.feature])
+        clusters = self._program(
+            "clusters",
+            [*request.decoding, *request.planes, *request.tubes, *request.kept.culling, request.occlusion.feature],
+        )
+        request.kept.bind(clusters)
         request.occlusion.bind(clusters)
         if number == LAST_LEFT:
             set_uniforms(clusters, pyramid=CULLING["last"])
