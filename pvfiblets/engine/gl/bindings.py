@@ -36,6 +36,7 @@ __all__ = [
     "MASKS",
     "MEASURE_STORAGE",
     "NEARER_PART",
+    "OPEN_STORAGE",
     "PEELING",
     "REGIONS",
     "SAMPLED",
@@ -202,6 +203,7 @@ STORAGE = _storage(
 
 MEASURE_STORAGE = _storage("measures of fiblets", measures=STORAGE["visibility_bits"])
 CLUSTER_STORAGE = _storage("clusters of fiblets", clusters=STORAGE["values"])
+OPEN_STORAGE = _storage("fiblets of clusters that may show", open_fiblets=STORAGE["visibility_bits"])
 COUNT_STORAGE = _storage("counts of fiblets", fiblet_counts=STORAGE["values"])
 ANSWER_STORAGE = _storage("answers about fiblets", answers=STORAGE["visibility_bits"], lists=STORAGE["values"])
 ITEM_STORAGE = _storage("items", seen=0, listed=1, counts=2, commands=3)
@@ -226,10 +228,10 @@ BLOCKS = Scope(
 """Largest number of uniform blocks: OpenGL guarantees twelve to a stage."""
 
 CONSTANTS = {
-    **{f"storage_{name}": number for name, number in STORAGE.items()},
     **{
         f"storage_{name}": number
-        for name, number in {**ANSWER_STORAGE, **MEASURE_STORAGE, **COUNT_STORAGE, **CLUSTER_STORAGE}.items()
+        for scope in (STORAGE, ANSWER_STORAGE, MEASURE_STORAGE, COUNT_STORAGE, CLUSTER_STORAGE, OPEN_STORAGE)
+        for name, number in scope.items()
     },
     **{f"items_{name}": number for name, number in ITEM_STORAGE.items()},
     **{f"image_{name}": number for name, number in {**IMAGES, **SUM_IMAGES}.items()},

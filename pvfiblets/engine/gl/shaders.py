@@ -54,6 +54,7 @@ FEATURES: dict[str, str] = {
     "ONE_SEGMENT": "far fiblets as one segment, none but these",
     "ONE_CLASS": "few fiblets, all drawn by one program",
     "CLUSTERS": "fiblets found through clusters of neighbours",
+    "OPEN_FIBLETS": "marks of the fiblets of clusters that may show",
     "CULL_PYRAMID": "fiblets hidden behind a depth pyramid",
     "CULL_COVERAGE": "fiblets hidden behind a coverage buffer",
     "INT64_ATOMICS": "depth and fiblet in one word of 64 bits",

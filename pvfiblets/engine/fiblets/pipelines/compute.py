@@ -230,7 +230,7 @@ class ComputePipeline:
             dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
             features = self._planning(request)
-            clustered = self._clustered(request)
+            clustered = request.clustered
             predicting = occlusion is not None and occlusion.predicts and not clustered
             if clustered:
                 features.append("CLUSTERS")
@@ -468,12 +468,6 @@ class ComputePipeline:
         self._barrier()
 
     @staticmethod
-    def _clustered(request: DrawRequest) -> bool:
-        """Whether the chunks have clusters, and there are depth pyramids to test them against."""
-        halfway = request.occlusion is not None and request.occlusion.halfway
-        return halfway and all("clusters" in chunk.buffers for chunk in request.chunks)
-
-    @staticmethod
     def _bind_clusters(number: int, chunk: Chunk) -> None:
         if number in (LAST_LEFT, NOW_LEFT):
             chunk.buffers["clusters"].bind_to_storage_buffer(CLUSTER_STORAGE["clusters"])
@@ -483,10 +477,7 @@ class ComputePipeline:
     ) -> Generator[None, None, None]:
         """Put the fiblets of clusters that a pyramid does not hide into a round, as a stage wants them."""
         assert request.occlusion is not None
-        clusters = self._program(
-            "clusters",
-            [*request.decoding, *request.planes, *request.tubes, *request.kept.culling, request.occlusion.feature],
-        )
+        clusters = self._program("clusters", request.cluster_features)
         request.kept.bind(clusters)
         request.occlusion.bind(clusters)
         if number == LAST_LEFT:
