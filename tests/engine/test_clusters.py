@@ -151,7 +151,7 @@ def test_most_clusters_are_not_looked_into(gl, onion, camera):
 
 @pytest.mark.exhaustive
 def test_too_small_boxes_would_be_noticed(both, onion, camera, monkeypatch):
-    changed(monkeypatch, "fiblets/compute/clusters.comp", "0.5 * (b - a)", "0.1 * (b - a)")
+    changed(monkeypatch, "fiblets/compute/cluster_box.glsl", "0.5 * (b - a)", "0.1 * (b - a)")
     pair = both(onion)
     different = 0
     for view, style in random_views(np.random.default_rng(0), 8, camera):
@@ -200,7 +200,7 @@ def test_clusters_that_are_cut_away_are_not_looked_into(both, onion, camera, cut
 @pytest.mark.parametrize("cut", ["planes", "sphere"])
 def test_too_small_cut_boxes_would_be_noticed(both, onion, camera, monkeypatch, cut):
     smaller = "!cut_away(Box(box.middle, 0.1 * box.reach))"
-    changed(monkeypatch, "fiblets/compute/clusters.comp", "!cut_away(box)", smaller)
+    changed(monkeypatch, "fiblets/compute/cluster_box.glsl", "!cut_away(box)", smaller)
     pair, different = both(onion), 0
     for angle in (0.0, 60.0, 120.0):
         view = View((300, 200), camera((300, 200), **orbit(angle, 110.0, 30.0)), **CUTS[cut])
