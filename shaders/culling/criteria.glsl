@@ -33,7 +33,7 @@ bool fails_criteria(uint f, Capsule c, out bool partly) {
     partly = partly || clip_touches(0.5 * (c.a + c.b), ball_of(c));
 #endif
 #if FEATURE_CLIP_REGION
-    int state = region_of_lines(c.a, c.b, c.r, ball_of(c));
+    int state = region_of_lines(c.a, c.b, body_of(c), ball_of(c));
     if (state < 0) return true;
     partly = partly || state == 0;
 #endif
