@@ -6,28 +6,15 @@
 // Invariant: a culled fiblet has no visible pixel.
 
 #include "culling/frustum.glsl"
-#include "frame/clip_planes.glsl"
+#include "culling/cut.glsl"
 #include "fiblets/data/streamline_mask.glsl"
 #include "fiblets/data/point_mask.glsl"
-#if FEATURE_CLIP_REGION
-#include "regions/classify.glsl"
-#endif
 
 float ball_of(Capsule c) { return 0.5 * distance(c.a, c.b) + body_of(c); }
 
 #if FEATURE_CLIP_PLANES
 // Whether a fiblet lies wholly beyond one of the caller's planes, by the ball around its capsule.
 bool beyond_clip_planes(Capsule c) { return clip_height(0.5 * (c.a + c.b)) + clip_rounding < -ball_of(c); }
-#endif
-
-#if FEATURE_CLIP_REGION
-// 1: wholly within the caller's region, its brush included; -1: wholly outside; 0: undecided.
-int region_of_fiblet(Capsule c) {
-    vec3 middle = 0.5 * (c.a + c.b);
-    float ball = ball_of(c), w = window_from_local[3].w + ball * w_per_mm;
-    w += window_from_local[0].w * middle.x + window_from_local[1].w * middle.y + window_from_local[2].w * middle.z;
-    return region_of_capsule(c.a, c.b, c.r + max(w, 0.0) * line_reach);
-}
 #endif
 
 // Whether the caller's choice culls a fiblet; `partly`: whether the rest of it may need to be cut.
@@ -46,7 +33,7 @@ bool fails_criteria(uint f, Capsule c, out bool partly) {
     partly = partly || clip_touches(0.5 * (c.a + c.b), ball_of(c));
 #endif
 #if FEATURE_CLIP_REGION
-    int state = region_of_fiblet(c);
+    int state = region_of_lines(c.a, c.b, body_of(c), ball_of(c));
     if (state < 0) return true;
     partly = partly || state == 0;
 #endif

@@ -191,8 +191,12 @@ class EmulatedMesh(MeshPipeline):
     def _round(self, job, features):
         task, mesh, program, array = self._compiled(job, features)
         ctx, wide = self._ctx, bool(job.wide)
+        if job.clustered:
+            self._mark_open(job, second="SECOND_ROUND" in features)
         for chunk in job.chunks:
             chunk.bind_storage()
+            if job.clustered:
+                self._bind_open(chunk)
             groups, each = -(-chunk.n_fiblets // TASK_FIBLETS), TASK_FIBLETS * SHARES[wide]
             tasks = ctx.buffer(reserve=groups * TASK_WORDS * 4)
             meshes = ctx.buffer(reserve=groups * each * MESH_WORDS * 4)

@@ -41,6 +41,8 @@ EXCLUSIVE = (
     COLOURS,
     INTEGRATORS,
     ("CULL_PYRAMID", "CULL_COVERAGE", "CLUSTERS"),
+    ("TEXTURE_DATA", "STORED_ROTATIONS"),
+    ("TEXTURE_DATA", "OPEN_FIBLETS"),
     ("ONE_SEGMENT", "CLIPPING"),
     ("ONE_SEGMENT", "LEVEL_OF_DETAIL"),
     ("GATHER", "PEEL", "EDGES"),
@@ -67,7 +69,7 @@ NEEDS: dict[str, tuple[tuple[str, ...], ...]] = {
     "TUBES": (("WIDE_LINES",),),
     "CROSS_LINE": (("WIDE_LINES",),),
     "SUBSAMPLES": (("WIDE_LINES",),),
-    "SECOND_ROUND": (("CULL_PYRAMID",),),
+    **dict.fromkeys(("SECOND_ROUND", "OPEN_FIBLETS"), (("CULL_PYRAMID",),)),
     **dict.fromkeys(("GATHER_SLICES", "GATHER_OUTSIDE", "PAINTED"), (("GATHER",),)),
     "PAINTED": tuple((source, "GATHER") for source in COLOURS),
     **dict.fromkeys((*COLOURS, "PAINT_LIGHT", "PAINT_ALPHA"), (("PAINTED",),)),
@@ -289,6 +291,8 @@ def _fiblets():
         kinds[f"compute {stage}"] = Kind(
             {"comp": f"fiblets/compute/{stage}.comp"}, never=("TEXTURE_DATA", "INT64_ATOMICS"), needs=needs
         )
+    needs = {**FREE, "REGION_FIELDS": (("CLIP_REGION",),), "TUBES": ()}
+    kinds["mesh open"] = Kind({"comp": "fiblets/mesh/open.comp"}, never=("TEXTURE_DATA",), needs=needs)
     kinds["pyramid"] = Kind({"comp": "culling/pyramid_reduce.comp"})
     for stage in ("clear", "depth", "split"):
         kinds[f"compute {stage}, 64 bits"] = Kind(

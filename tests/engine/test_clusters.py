@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pvfiblets import compress
+from pvfiblets import compress, regions
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.data import chunks
 from pvfiblets.engine.fiblets.data.clusters import cluster_words
@@ -151,10 +151,59 @@ def test_most_clusters_are_not_looked_into(gl, onion, camera):
 
 @pytest.mark.exhaustive
 def test_too_small_boxes_would_be_noticed(both, onion, camera, monkeypatch):
-    changed(monkeypatch, "fiblets/compute/clusters.comp", "0.5 * (b - a)", "0.1 * (b - a)")
+    changed(monkeypatch, "fiblets/compute/cluster_box.glsl", "0.5 * (b - a)", "0.1 * (b - a)")
     pair = both(onion)
     different = 0
     for view, style in random_views(np.random.default_rng(0), 8, camera):
         a, b = read(pair.culled.render(view, style)), read(pair.whole.render(view, style))
+        different += sum(differences(a, b).values())
+    assert different > 0
+
+
+CUTS = {
+    "planes": {"clip_planes": [(0.2, 1.0, 0.1, 0.0)]},
+    "sphere": {"region": regions.Sphere((10.0, -5.0, 5.0), 20.0)},
+    "outside": {"region": ~regions.Box((-20.0, 40.0, -40.0, 10.0, -30.0, 10.0))},
+}
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("cut", CUTS)
+def test_clusters_that_are_cut_away_are_not_looked_into(both, onion, camera, cut):
+    """Frames do not show it. What is left is as little as boxes that reach into what is kept, from NumPy."""
+    pair, size = both(onion), (200, 150)
+    for angle, style in ((0.0, 3.0), (1.14, 1.0)):
+        view = View(size, camera(size, **orbit(angle, 110.0, 30.0)), **CUTS[cut])
+        pair.draw(view, FibletStyle(style))
+    words = np.concatenate([np.ravel(words).view(np.uint32) for words in cluster_words(onion, 0, onion.n_fiblets)])
+    boxes = words[: 3 * -(-onion.n_fiblets // 64)].view(np.uint16).reshape(-1, 2, 3).astype(float)
+    unit = onion.anchor_scale * (1.0 if onion.anchors_low is None else 65536.0)
+    least, most = (onion.origin + (boxes[:, side] * 2.0 - 32768.0) * unit for side in (0, 1))
+    middle, reach = 0.5 * (least + most), 0.5 * (most - least)
+    if cut == "planes":
+        normal = np.array(CUTS[cut]["clip_planes"][0][:3])
+        may = middle @ normal + reach @ np.abs(normal) >= -0.05
+    else:
+        ball = np.linalg.norm(reach, axis=1) + 0.5
+        if cut == "sphere":
+            may = np.linalg.norm(middle - (10.0, -5.0, 5.0), axis=1) <= 20.0 + ball
+        else:
+            low, high = np.reshape((-20.0, 40.0, -40.0, 10.0, -30.0, 10.0), (3, 2)).T
+            may = ~((middle - ball[:, None] > low) & (middle + ball[:, None] < high)).all(axis=1)
+    assert may.mean() < 0.9
+    lengths = pair.culled._pipeline.list_lengths().sum(axis=0)
+    assert 0 < lengths[compute.NOW_LEFT, 0] <= may.sum()
+    assert 0 < lengths[compute.LAST_LEFT, 0] <= may.sum()
+
+
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("cut", ["planes", "sphere"])
+def test_too_small_cut_boxes_would_be_noticed(both, onion, camera, monkeypatch, cut):
+    smaller = "!cut_away(Box(box.middle, 0.1 * box.reach))"
+    changed(monkeypatch, "fiblets/compute/cluster_box.glsl", "!cut_away(box)", smaller)
+    pair, different = both(onion), 0
+    for angle in (0.0, 60.0, 120.0):
+        view = View((300, 200), camera((300, 200), **orbit(angle, 110.0, 30.0)), **CUTS[cut])
+        a, b = read(pair.culled.render(view, FibletStyle())), read(pair.whole.render(view, FibletStyle()))
         different += sum(differences(a, b).values())
     assert different > 0

@@ -37,7 +37,8 @@ def test_depth_and_owner_are_taken_at_once(stage):
     ],
 )
 def test_used_where_storage_buffers_have_them(extensions, bindings, expected, monkeypatch):
-    asked = {"GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS": bindings}
+    limits = "GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS", "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS"
+    asked = dict.fromkeys(limits, bindings)
     monkeypatch.setattr(GLExtras, "get_integer", lambda self, name: asked[name])
     ctx = SimpleNamespace(extensions=set(extensions), info={"GL_VENDOR": "somebody"}, version_code=460)
     assert _has_int64_atomics(ctx) is expected

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from pvfiblets import Streamlines, compress, regions
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS, compute
 from pvfiblets.engine.gbuffer import GBuffer
@@ -378,3 +379,24 @@ def test_the_texture_is_made_and_given_back(gl):
     target.release()
     target.release()
     assert target.across is None
+
+
+@pytest.mark.parametrize("pipeline", ["geometry", "compute"])
+def test_a_region_keeps_the_side_of_a_tube_whose_axis_lies_outside(gl, camera, pipeline):
+    """The axis lies half a millimetre outside of a box, the surface reaches 1.5 mm into it."""
+    x = np.linspace(-20.0, 20.0, 200)
+    fiblets = compress(Streamlines.from_list([np.c_[x, np.zeros_like(x), np.zeros_like(x)]]))
+    size, box = (200, 150), regions.Box((-50.0, 50.0, 0.5, 60.0, -50.0, 50.0))
+    matrix = camera(size, eye=(0, -20, 80), target=(0, 0, 0), near=10.0, far=200.0)
+    renderer = FibletRenderer(gl, fiblets, pipeline=pipeline, culling=None)
+    pictures = [read(renderer.render(View(size, matrix, region=cut), FibletStyle(radius=2.0))) for cut in (None, box)]
+    renderer.release()
+    whole, kept = pictures
+    rows, columns = np.nonzero(whole.drawn)
+    window = np.c_[(columns + 0.5) / size[0], (rows + 0.5) / size[1], whole.window_depth[whole.drawn]]
+    places = np.c_[2.0 * window - 1.0, np.ones(len(rows))] @ np.linalg.inv(matrix).T
+    y = places[:, 1] / places[:, 3]
+    sure = np.abs(y - 0.5) > 0.02
+    assert (y[sure] > 0.5).sum() > 200
+    np.testing.assert_array_equal(kept.drawn[whole.drawn][sure], y[sure] > 0.5)
+    assert not kept.drawn[~whole.drawn].any()

@@ -11,9 +11,10 @@ import moderngl
 import numpy as np
 import pytest
 
-from pvfiblets import compress, synthetic
+from pvfiblets import Streamlines, compress, synthetic
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import EngineError
+from pvfiblets.engine.fiblets.data import chunks
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.fiblets.pipelines.mesh import TASK_FIBLETS, MeshPipeline
 from pvfiblets.engine.gl.mesh_program import MeshProgram
@@ -24,6 +25,7 @@ from .cells import SHIFT_256
 from .emulated import emulated_renderer
 from .pictures import EVERY_POINT, SIZE, assert_same, differences, read
 from .polylines import to_clip, to_window
+from .test_two_phase import shells
 from .visibility_bits import planned
 
 DRAWN = {
@@ -271,6 +273,52 @@ def test_culling_in_the_task_stage(gl, monkeypatch, camera, serial, culling):
     assert drawn[1] < 0.98 or culling == "coverage"  # of which so small a picture has few texels
 
 
+def lying_open(renderer):
+    """Whether each fiblet's cluster may show, by round."""
+    rounds = []
+    for chunk in renderer._chunks:
+        n = chunk.n_fiblets
+        words = np.frombuffer(renderer._pipeline._open[chunk.plan.fiblets[0]].read(), "<u4")[: 2 * -(-n // 32)]
+        rounds.append(np.unpackbits(words.reshape(2, -1).view(np.uint8), axis=1, bitorder="little")[:, :n] != 0)
+    return np.concatenate(rounds, axis=1)
+
+
+@pytest.mark.more
+def test_clusters_before_the_task_stage(gl, monkeypatch, camera):
+    """They change no pixel, of lines at one depth neither; what is drawn in the second round lies open."""
+    monkeypatch.setattr(chunks, "CLUSTERED", 0)
+    lines = shells(4.0).decompress()
+    offsets = np.concatenate([lines.offsets, lines.offsets[1:] + lines.offsets[-1]])
+    fiblets = compress(Streamlines(np.concatenate([lines.points] * 2), offsets), max_error=1e-3)
+    culled = emulated_renderer(monkeypatch, gl, fiblets, culling="two-phase")
+    whole = emulated_renderer(monkeypatch, gl, fiblets, culling=None)
+    size, cut = (24, 18), {"clip_planes": [(0.0, 1.0, 0.2, 10.0)]}
+    for eye, kept in ((110, 0, 30), {}), ((110, 2, 30), {}), ((-90, 60, 5), cut):
+        view = View(size, camera(size, eye=eye, target=(0, 0, 0), near=1.0, far=300.0, angle=40.0), **kept)
+        assert_same(read(culled.render(view)), read(whole.render(view)))
+        likely, left = lying_open(culled)
+        assert likely.any() == (eye != (110, 0, 30))
+        assert 0.0 < left.mean() < (0.95 if likely.any() else 1.01)
+        assert left[survivors(culled._pipeline.tasks[1])].all()
+    culled.release()
+    whole.release()
+
+
+@pytest.mark.more
+def test_clusters_of_chunks_before_the_task_stage(gl, monkeypatch, fabricate, random_lines, camera):
+    monkeypatch.setattr(chunks, "CLUSTERED", 0)
+    fiblets = fabricate(random_lines(900, seed=3), kind=1, per_fiblet=3)
+    culled = emulated_renderer(monkeypatch, gl, fiblets, culling="two-phase", max_buffer_bytes=250_000)
+    assert len(culled._chunks) > 1
+    whole = FibletRenderer(gl, fiblets, pipeline="compute", culling=None)
+    for eye in ((0, -200, 0), (1, -200, 0)):
+        view = View((40, 30), camera((40, 30), eye=eye))
+        assert_alike(read(culled.render(view, EVERY_POINT)), read(whole.render(view, EVERY_POINT)))
+    assert lying_open(culled).any(axis=1).all()
+    culled.release()
+    whole.release()
+
+
 @pytest.mark.more
 def test_chunks_and_calls_of_limited_length(gl, monkeypatch, fabricate, random_lines, camera):
     fiblets = fabricate(random_lines(900, seed=3), kind=1, per_fiblet=3)
@@ -317,7 +365,7 @@ def test_calls_are_as_long_as_the_extensions_promise():
             calls.append((self["first_group"], count))
 
     chunk = SimpleNamespace(n_fiblets=90_000_000, bind_storage=lambda: None)
-    pipeline._draw(None, Program(), chunk, None)
+    pipeline._draw(None, Program(), chunk, SimpleNamespace(clustered=False))
     groups = -(-90_000_000 // TASK_FIBLETS)
     assert [first for first, _ in calls] == list(range(0, groups, 65535))
     assert sum(count for _, count in calls) == groups

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from pvfiblets.engine.fiblets.pipelines.compute import CARD_FORMS
 from pvfiblets.report import machine
 from pvfiblets.report.process import CellProcess
 from pvfiblets.report.record import CaseResult
@@ -17,6 +18,7 @@ from pvfiblets.report.study import Budget
 from .little import little
 
 ROOT = Path(__file__).parents[2]
+CHANGING = "cl", "work", "calls", *CARD_FORMS
 BRAIN = {"kind": "fiblets", "pipeline": "compute", "culling": "two-phase", "segments": 3e5, "step": 0.1, "view": "far",
          "size": [160, 90], "frames": 2, "limit": 0.1, "warm": 0.01}  # fmt: skip
 
@@ -134,7 +136,7 @@ def test_the_plan_is_in_the_order_of_value():
 
 
 @pytest.mark.more
-@pytest.mark.parametrize("name", [name for name in card.alternatives(True) if name.startswith(("cl", "work", "calls"))])
+@pytest.mark.parametrize("name", [name for name in card.alternatives(True) if name.startswith(CHANGING)])
 def test_steps_done_otherwise_draw_the_same(gl, folder, name):
     """Of a set with clusters and classes, whose lists take several calls."""
     base = {**BRAIN, "folder": folder, "constants": {"fiblets.data.chunks:CLUSTERED": 0}}

@@ -32,6 +32,7 @@ from .data.upload import release_chunks, upload_fitting
 from .fiblet_drawable import has_layers
 from .gather.lines_behind import LinesBehind
 from .pipelines import CONSTANTS, ComputePipeline, DrawRequest, Limits, Pipeline, make_measurer, make_pipeline
+from .pipelines.limits import MESH
 from .style import FibletStyle
 from .visibility import Visibility
 
@@ -95,7 +96,7 @@ class FibletRenderer(LinesBehind):
         self._query: RegionQuery | None = None
         self._choice: CullingChoice | None = None
         limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
-        two_phase = pipeline == "compute" and culling in ("two-phase", "auto")
+        two_phase = pipeline in ("compute", *MESH) and culling in ("two-phase", "auto")
         self._limits = limits = replace(limits, clustered=two_phase and fiblets.n_fiblets >= chunks.CLUSTERED)
         with self._making():
             whole = fiblets if whole is None else whole

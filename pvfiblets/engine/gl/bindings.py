@@ -54,7 +54,7 @@ def together(*scopes: Scope) -> None:
 
 
 def _storage(name: str, **numbers: int) -> Scope:
-    return Scope(name, numbers, first=0, last=8)  # the ninth only where drivers have it
+    return Scope(name, numbers, first=0, last=9)  # more than eight only where drivers have them
 
 
 # Texture units, shared by drawables.
@@ -144,12 +144,13 @@ together(VOLUMES, VOLUME_OCCLUSION, REGIONS)
 
 STORAGE = _storage(
     "fiblets' records", anchors=0, decoding=1, codes=2, bounds=3, pages=4, visibility_bits=5, anchors_low=6, values=7,
-    nearest=8,
+    nearest=8, rotations=9,
 )  # fmt: skip
 """Storage buffers of a chunk and of a picture. Passes that need no bits or no values bind their own buffers there."""
 
 MEASURE_STORAGE = _storage("measures of fiblets", measures=STORAGE["visibility_bits"])
 CLUSTER_STORAGE = _storage("clusters of fiblets", clusters=STORAGE["values"])
+OPEN_STORAGE = _storage("fiblets of clusters that may show", open_fiblets=STORAGE["visibility_bits"])
 COUNT_STORAGE = _storage("counts of fiblets", fiblet_counts=STORAGE["values"])
 ANSWER_STORAGE = _storage("answers about fiblets", answers=STORAGE["visibility_bits"], lists=STORAGE["values"])
 ITEM_STORAGE = _storage("items", seen=0, listed=1, counts=2, commands=3)
@@ -174,10 +175,10 @@ BLOCKS = Scope(
 """Largest number of uniform blocks: OpenGL guarantees twelve to a stage."""
 
 CONSTANTS = {
-    **{f"storage_{name}": number for name, number in STORAGE.items()},
     **{
         f"storage_{name}": number
-        for name, number in {**ANSWER_STORAGE, **MEASURE_STORAGE, **COUNT_STORAGE, **CLUSTER_STORAGE}.items()
+        for scope in (STORAGE, ANSWER_STORAGE, MEASURE_STORAGE, COUNT_STORAGE, CLUSTER_STORAGE, OPEN_STORAGE)
+        for name, number in scope.items()
     },
     **{f"items_{name}": number for name, number in ITEM_STORAGE.items()},
     **{f"image_{name}": number for name, number in {**IMAGES, **SUM_IMAGES}.items()},

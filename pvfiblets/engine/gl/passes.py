@@ -10,10 +10,12 @@ from typing import Any
 import moderngl
 
 from ..errors import EngineError
+from .bindings import STORAGE
+from .gl_version import version_of
 from .moderngl_extras import GLExtras
 from .queries import Timers
 
-__all__ = ["GROUP_SIZE", "Passes", "dispatch", "is_software", "nowhere", "work_groups"]
+__all__ = ["GROUP_SIZE", "Passes", "dispatch", "has_storage", "is_software", "nowhere", "work_groups"]
 
 
 SOFTWARE = ("llvmpipe", "softpipe", "swrast")
@@ -103,6 +105,14 @@ def work_groups(ctx: moderngl.Context) -> int:
     """Return how many work groups a dispatch may have along its first axis."""
     # moderngl does not ask contexts that say they are older than 4.3; OpenGL promises so many.
     return int(ctx.info.get("GL_MAX_COMPUTE_WORK_GROUP_COUNT", (65535,))[0])
+
+
+def has_storage(ctx: moderngl.Context, name: str) -> bool:
+    """Return whether a compute program may use the storage buffers up to the one of this name; eight are certain."""
+    if version_of(ctx) < 430:
+        return False
+    limits = "GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS", "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS"
+    return min(map(GLExtras(ctx).get_integer, limits)) > STORAGE[name]
 
 
 def dispatch(program: moderngl.ComputeShader, groups: int, max_groups: int) -> None:

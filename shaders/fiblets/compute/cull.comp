@@ -9,7 +9,7 @@
 //
 // With FEATURE_CLUSTERS only fiblets visible in the last picture are tested; choose.glsl finds the others through their clusters.
 //
-// One invocation per 32 fiblets. It writes the plan of the drawing passes: fiblets visible in the last
+// It writes the plan of the drawing passes, by words of 32 fiblets (fiblets/compute/by_word.glsl): fiblets visible in the last
 // picture (drawn first, so that most others lose at their first look at the depth image), others that will probably show
 // (two-phase culling only: culling/visibility_prediction.glsl), and the class of each.
 
@@ -20,8 +20,7 @@ layout(local_size_x = {{ group_size }}) in;
 #if FEATURE_CULL_PYRAMID
 #include "culling/visibility_prediction.glsl"
 #endif
-#include "frame/groups.glsl"
-#include "fiblets/compute/visibility_bits.glsl"
+#include "fiblets/compute/by_word.glsl"
 
 uniform uint seed_words;  // of so many groups of 32, one has its seed drawn as if it had been seen; 0: none
 uniform uint slots;       // of arguments
@@ -35,33 +34,39 @@ void empty_lists() {
     }
 }
 
+uint seen_before(uint word) {
+    bool seeded = seed_words != 0u && ((chunk_first >> 5) + word) % seed_words == 0u;
+    return marks(SEEN, word) | (seeded ? 0x01010101u : 0u);
+}
+
+uint asked(uint word) {
+    uint here = chunk_fiblets - 32u * word, all = here < 32u ? (1u << here) - 1u : 0xFFFFFFFFu;
+#if FEATURE_CLUSTERS
+    return all & seen_before(word);
+#else
+    return all;
+#endif
+}
+
+// Whether it shows, the bits of its class, and whether it will probably show.
+uint answers(uint f) {
+    uint which;
+    Capsule c = capsule_of(f);
+    uint found = can_show(f, c, which) ? 1u : 0u;
+#if FEATURE_CULL_PYRAMID
+    if (predicted_visible(c)) found |= 8u;
+#endif
+    return found | which << 1;
+}
+
 void main() {
     if (group_index() == 0u) empty_lists();
-    uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
-    uint first = word * 32u;
-    if (first >= chunk_fiblets) return;
-    uint shown = 0u, low = 0u, high = 0u, likely = 0u, before = marks(SEEN, word);
-    if (seed_words != 0u && ((chunk_first >> 5) + word) % seed_words == 0u) before |= 0x01010101u;
-#if FEATURE_CLUSTERS
-    uint tested = before;
-#else
-    uint tested = 0xFFFFFFFFu;
-#endif
-    if (chunk_fiblets - first < 32u) tested &= (1u << (chunk_fiblets - first)) - 1u;
-    for (; tested != 0u; tested &= tested - 1u) {
-        uint i = uint(findLSB(tested)), which;
-        Capsule c = capsule_of(first + i);
-        if (can_show(first + i, c, which)) shown |= 1u << i;
-        low |= (which & 1u) << i;
-        high |= (which >> 1) << i;
-#if FEATURE_CULL_PYRAMID
-        if (predicted_visible(c)) likely |= 1u << i;
-#endif
-    }
-    set_marks(ROUND_LOW, word, shown & (before | ~likely));
+    if (!find_answers()) return;
+    uint before = seen_before(word), shown = answered[0];
+    set_marks(ROUND_LOW, word, shown & (before | ~answered[3]));
     set_marks(ROUND_HIGH, word, shown & ~before);
-    set_marks(CLASS_LOW, word, low & shown);
-    set_marks(CLASS_HIGH, word, high & shown);
+    set_marks(CLASS_LOW, word, shown & answered[1]);
+    set_marks(CLASS_HIGH, word, shown & answered[2]);
     set_marks(CANDIDATES, word, 0u);
     set_marks(SEEN, word, 0u);
     set_marks(TIED, word, 0u);

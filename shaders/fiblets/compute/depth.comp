@@ -13,6 +13,9 @@
 #endif
 layout(local_size_x = {{ group_size }}) in;
 
+#if FEATURE_COVER_APART && !FEATURE_WIDE_LINES
+#define COVER_APART
+#endif
 #include "fiblets/compute/software_raster/segments.glsl"
 #if FEATURE_CLIP_REGION
 #include "regions/boundaries.glsl"
@@ -57,17 +60,31 @@ void plot(Fragment fragment, Segment segment) {
 #endif
 }
 
+void begin_cover(uint f) {
+#if FEATURE_INT64_ATOMICS
+    owner = chunk_first + f;
+#else
+    won = false;
+#endif
+}
+
+void end_cover(uint f) {
+#if !FEATURE_INT64_ATOMICS
+    if (won) mark(CANDIDATES, f);
+#endif
+}
+
+#ifndef COVER_APART
 void main() {
     for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
         uint f = nth_fiblet(k);
         if (f == NO_FIBLET) break;
-#if FEATURE_INT64_ATOMICS
-        owner = chunk_first + f;
+        begin_cover(f);
         draw_fiblet(f);
-#else
-        won = false;
-        draw_fiblet(f);
-        if (won) mark(CANDIDATES, f);
-#endif
+        end_cover(f);
     }
 }
+#else
+#include "fiblets/compute/software_raster/cover_apart.glsl"
+void main() { draw_together(); }
+#endif

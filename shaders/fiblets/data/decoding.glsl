@@ -14,6 +14,12 @@ uint decoding_word(uint index) { return decoding[index]; }
 uint code_word(uint index) { return codes[index]; }
 #endif
 
-// 16 KiB, the least that OpenGL promises to a uniform block: cap angle by cap angle 256 words, four to a row.
+// 16 KiB, the least that OpenGL promises to a uniform block: cap angle by cap angle 256 words, four to a row. Invocations read different
+// ones: graphics cards serve these one by one from a uniform block, but not from a storage buffer.
+#if FEATURE_STORED_ROTATIONS
+layout(std430, binding = {{ storage_rotations }}) readonly buffer StoredRotations { uint rotations[]; };
+uint rotation_word(uint index) { return rotations[index]; }
+#else
 #include "uniforms/Rotations.glsl"
 uint rotation_word(uint index) { return rotations[index >> 2][index & 3u]; }
+#endif

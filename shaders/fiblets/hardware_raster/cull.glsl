@@ -20,12 +20,21 @@ bool was_seen(uint f) {
 }
 #endif
 
+#if FEATURE_OPEN_FIBLETS
+#include "fiblets/mesh/open_fiblets.glsl"
+#else
+bool is_open(uint round, uint f) { return true; }
+#endif
+
 bool survives(uint f) {
+#if FEATURE_CULL_PYRAMID
+    bool second = second_round != 0, before = was_seen(f), likely = is_open(0u, f);
+    if (second ? before || !is_open(1u, f) : !before && !likely) return false;
+#endif
     Capsule c = capsule_of(f);
     if (outside_view(f, c)) return false;
 #if FEATURE_CULL_PYRAMID
-    bool first = was_seen(f) || predicted_visible(c);
-    bool second = second_round != 0;
+    bool first = before || (likely && predicted_visible(c));
     if (first == second || (second && hidden(c))) return false;
 #elif FEATURE_CULL_COVERAGE
     if (hidden(c)) return false;

@@ -12,8 +12,9 @@ import numpy.typing as npt
 from ....codec import direction_codebook, layout
 from ...clipping import CLIP_PLANES_BLOCK, clip_planes_block
 from ...frame import FRAME_BLOCK, frame_block, segment_pixels
-from ...gl.bindings import BLOCKS
+from ...gl.bindings import BLOCKS, STORAGE
 from ...gl.block_buffers import BlockBuffers
+from ...gl.passes import has_storage
 from ...gl.uniform_struct import Field, UniformStruct
 from ..line_tubes import TUBES_BLOCK, tubes_block
 
@@ -63,6 +64,7 @@ class SharedBlocks(BlockBuffers):
         self._fiblets = fiblets
         self.top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
         self._view: View | None = None
+        self._stored = has_storage(ctx, "rotations")
         coding = CODING_BLOCK.pack(
             anchor_scale=fiblets.anchor_scale,
             radius_scale=fiblets.reach_scale,
@@ -88,6 +90,8 @@ class SharedBlocks(BlockBuffers):
         """Bind the blocks that every program has."""
         for name, block in (("frame", "Frame"), ("coding", "Coding"), ("rotations", "Rotations")):
             self.buffers[name].bind_to_uniform_block(BLOCKS[block])
+        if self._stored:
+            self.buffers["rotations"].bind_to_storage_buffer(STORAGE["rotations"])
 
     def forget_camera(self) -> None:
         """Have positions count from the first anchor's, so that measurements do not depend on the camera."""

@@ -50,7 +50,7 @@ from ...errors import EngineError
 from ...gl.bindings import CLUSTER_STORAGE, CULLING, IMAGES, STORAGE
 from ...gl.gl_version import version_of
 from ...gl.moderngl_extras import GLExtras
-from ...gl.passes import GROUP_SIZE, dispatch, is_software
+from ...gl.passes import GROUP_SIZE, dispatch, has_storage, is_software
 from ...gl.program_uniforms import set_uniforms
 from ...gl.shaders import EXTENDED, Programs
 from ...pieces import Pieces, finish
@@ -83,6 +83,10 @@ hide most of the other fiblets: of 7.4 million, 1.5 million are drawn instead of
 
 INT64_EXTENSIONS = "GL_NV_shader_atomic_int64", "GL_ARB_gpu_shader_int64"
 """For the least of words that hold depth and fiblet."""
+
+CARD_FORMS: Sequence[str] = ("STORED_ROTATIONS", "PER_FIBLET", "COVER_APART")
+SOFTWARE_FORMS: Sequence[str] = ()
+"""Features of all programs on graphics cards, and of software OpenGL, which they slow down."""
 
 READ_LISTS = True
 """Whether software OpenGL compiles programs of classes when they first have fiblets."""
@@ -159,6 +163,9 @@ class ComputePipeline:
         self._gl = GLExtras(ctx)
         self._software = is_software(ctx)
         self._int64 = ("INT64_ATOMICS",) if _has_int64_atomics(ctx) else ()
+        self._forms = SOFTWARE_FORMS if self._software else CARD_FORMS
+        if not has_storage(ctx, "rotations"):
+            self._forms = [form for form in self._forms if form != "STORED_ROTATIONS"]
         self._shares = [(0, MAX_POINTS)]
         self._raster: GeometryPipeline | None = None
         self.planned = False
@@ -224,7 +231,7 @@ class ComputePipeline:
             dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
             features = self._planning(request)
-            clustered = self._clustered(request)
+            clustered = request.clustered
             predicting = occlusion is not None and occlusion.predicts and not clustered
             if clustered:
                 features.append("CLUSTERS")
@@ -339,7 +346,7 @@ class ComputePipeline:
         return [*request.decoding, *request.detail, *request.planes, *request.tubes, *request.kept.culling, *one]
 
     def _program(self, stage: str, features: Sequence[str]) -> moderngl.ComputeShader:
-        return self._programs.compute(f"fiblets/compute/{stage}.comp", features)
+        return self._programs.compute(f"fiblets/compute/{stage}.comp", [*features, *self._forms])
 
     def _barrier(self) -> None:
         self._ctx.memory_barrier(
@@ -384,7 +391,7 @@ class ComputePipeline:
         looks = (request.occlusion.feature,) if request.occlusion is not None and self._tests_segments(request) else ()
         classes = [(part, [*features, *self._int64, *looks]) for part, features in request.classes(one=self._one_class)]
         name = f"fiblets/compute/{stage}.comp"
-        made = all(self._programs.has_compute(name, each) for _, each in classes)
+        made = all(self._programs.has_compute(name, [*each, *self._forms]) for _, each in classes)
         if made or not (READ_LISTS and self._software and self._marks):
             return classes
         self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
@@ -462,12 +469,6 @@ class ComputePipeline:
         self._barrier()
 
     @staticmethod
-    def _clustered(request: DrawRequest) -> bool:
-        """Whether the chunks have clusters, and there are depth pyramids to test them against."""
-        halfway = request.occlusion is not None and request.occlusion.halfway
-        return halfway and all("clusters" in chunk.buffers for chunk in request.chunks)
-
-    @staticmethod
     def _bind_clusters(number: int, chunk: Chunk) -> None:
         if number in (LAST_LEFT, NOW_LEFT):
             chunk.buffers["clusters"].bind_to_storage_buffer(CLUSTER_STORAGE["clusters"])
@@ -477,7 +478,8 @@ class ComputePipeline:
     ) -> Generator[None, None, None]:
         """Put the fiblets of clusters that a pyramid does not hide into a round, as a stage wants them."""
         assert request.occlusion is not None
-        clusters = self._program("clusters", [*request.decoding, *request.tubes, request.occlusion.feature])
+        clusters = self._program("clusters", request.cluster_features)
+        request.kept.bind(clusters)
         request.occlusion.bind(clusters)
         if number == LAST_LEFT:
             set_uniforms(clusters, pyramid=CULLING["last"])
@@ -503,8 +505,10 @@ class ComputePipeline:
         looks: bool = False,
         **uniforms: object,
     ) -> Generator[None, None, None]:
-        """Run a pass of one invocation for 32 fiblets, which may look at the occlusion's texture."""
+        """Run a pass over all fiblets (``by_word.glsl``), which may look at the occlusion's texture."""
         program = self._program(stage, features)
+        apart = "PER_FIBLET" in self._forms and "CLUSTERS" not in features
+        words = GROUP_WORDS if apart else GROUP_SIZE  # of a work group
 
         def tell() -> None:
             request.kept.bind(program)
@@ -516,7 +520,7 @@ class ComputePipeline:
         for index, chunk in enumerate(request.chunks):
             self._bind_chunk(index, request)
             set_uniforms(program, slots=self._marks[index].slots)
-            groups = -(-chunk.n_fiblets // (32 * GROUP_SIZE))
+            groups = -(-chunk.n_fiblets // (32 * words))
             if pieces is None:
                 dispatch(program, groups, self._max_groups)
                 continue
@@ -572,4 +576,4 @@ def _has_int64_atomics(ctx: moderngl.Context) -> bool:
     """Whether shaders take the least of 64-bit words in a storage buffer, and there is a binding left for it."""
     if version_of(ctx) < EXTENDED or not set(INT64_EXTENSIONS) <= set(ctx.extensions):
         return False
-    return GLExtras(ctx).get_integer("GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS") > STORAGE["nearest"]
+    return has_storage(ctx, "nearest")

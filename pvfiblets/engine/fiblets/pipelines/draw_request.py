@@ -103,6 +103,18 @@ class DrawRequest:
         return () if self.gather is None else self.gather.features
 
     @property
+    def clustered(self) -> bool:
+        """Whether the chunks have clusters, and there are depth pyramids to test them against."""
+        halfway = self.occlusion is not None and self.occlusion.halfway
+        return halfway and all("clusters" in chunk.buffers for chunk in self.chunks)
+
+    @property
+    def cluster_features(self) -> tuple[str, ...]:
+        """Features of the programs that test clusters (``fiblets/compute/cluster_box.glsl``)."""
+        assert self.occlusion is not None
+        return (*self.decoding, *self.planes, *self.tubes, *self.kept.culling, self.occlusion.feature)
+
+    @property
     def cutting(self) -> tuple[str, ...]:
         """Features that draw a fiblet in part."""
         return (*self.planes, *self.kept.cutting)

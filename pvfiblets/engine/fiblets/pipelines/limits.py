@@ -11,7 +11,7 @@ from ...gl.passes import work_groups
 from ...gl.work_limits import WorkLimits
 from .constants import CLASSES, LIST_SHARE, VISIBILITY_WORDS
 
-__all__ = ["TEXTURED", "Limits"]
+__all__ = ["MESH", "TEXTURED", "Limits"]
 
 TEXTURED = ("tessellation", "geometry")
 """Pipelines that read data through buffer textures, and need no storage buffers."""

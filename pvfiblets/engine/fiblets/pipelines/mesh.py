@@ -13,6 +13,9 @@ What stands before and after is the same: a task work group tests :data:`TASK_FI
 which of them are left; fragments are those of the other raster pipelines. Data come from the storage buffers that the
 compute pipeline reads, so that nothing else is uploaded.
 
+Of sets with clusters a compute stage tests these first (``shaders/fiblets/mesh/open.comp``), and marks the fiblets of
+the ones that may show. The task stage reads these marks in the order of coding, which decides between equal depths.
+
 The stages have a form for each extension. GL_EXT_mesh_shader's is taken where the driver has and compiles it, else
 NVIDIA's. Both promise 65,535 task work groups a call: 16.7 million fiblets. More are drawn by several calls.
 """
@@ -26,13 +29,16 @@ from typing import Any
 import moderngl
 
 from ...errors import EngineError
+from ...gl.bindings import CLUSTER_STORAGE, CULLING, OPEN_STORAGE
 from ...gl.capabilities import MESH, MESH_EXT
 from ...gl.moderngl_extras import GLExtras
+from ...gl.passes import GROUP_SIZE, dispatch, work_groups
+from ...gl.program_uniforms import set_uniforms
 from ...gl.shaders import Programs
-from ..data.chunks import Chunk
+from ..data.chunks import CLUSTER, Chunk, padded, reserve_buffer
 from .constants import TASK_FIBLETS, THREADS
 from .draw_request import DrawRequest
-from .hardware_raster import RasterPipeline
+from .hardware_raster import Memory, RasterPipeline
 
 __all__ = ["MeshPipeline"]
 
@@ -64,6 +70,7 @@ class MeshPipeline(RasterPipeline):
         super().__init__(ctx, gl, programs, n_fiblets)
         self.name = "mesh-serial" if serial else "mesh"
         self._max_tasks = PROMISED_TASKS
+        self._open: dict[int, moderngl.Buffer] = {}  # by a chunk's first fiblet
         self._ballots = ("SUBGROUPS",) if self._has_ballots() else ()
         self._take_form("MESH_EXT" if MESH_EXT in ctx.extensions else "")
 
@@ -100,6 +107,53 @@ class MeshPipeline(RasterPipeline):
     def _prepare(self, program: Any) -> None:
         """Do nothing: bindings stand in the sources."""
 
+    def _features(self, request: DrawRequest) -> list[str]:
+        return [*super()._features(request), *(["OPEN_FIBLETS"] if request.clustered else [])]
+
+    def _round(self, request: DrawRequest, features: Sequence[str]) -> None:
+        if request.clustered:
+            self._mark_open(request, second="SECOND_ROUND" in features)
+        super()._round(request, features)
+
+    def _mark_open(self, request: DrawRequest, *, second: bool) -> None:
+        """Mark the fiblets of clusters that the last picture, or the first round, does not hide."""
+        assert request.occlusion is not None
+        if not second:
+            for chunk in request.chunks:
+                first, last = chunk.plan.fiblets
+                if first not in self._open:
+                    size = padded(8 * -(-(last - first) // 32))
+                    self._open[first] = reserve_buffer(self._ctx, size, "marks of open fiblets")
+                self._gl.clear_words(self._open[first])
+            if not request.occlusion.predicts:
+                return
+        program = self._programs.compute("fiblets/mesh/open.comp", request.cluster_features)
+        request.kept.bind(program)
+        request.occlusion.bind(program)
+        set_uniforms(program, marked_round=int(second), **({} if second else {"pyramid": CULLING["last"]}))
+        for chunk in request.chunks:
+            chunk.bind_block()
+            chunk.buffers["clusters"].bind_to_storage_buffer(CLUSTER_STORAGE["clusters"])
+            self._bind_open(chunk)
+            dispatch(program, -(-chunk.n_fiblets // (CLUSTER * GROUP_SIZE)), work_groups(self._ctx))
+        self._ctx.memory_barrier(moderngl.SHADER_STORAGE_BARRIER_BIT)
+
+    def _bind_open(self, chunk: Chunk) -> None:
+        self._open[chunk.plan.fiblets[0]].bind_to_storage_buffer(OPEN_STORAGE["open_fiblets"])
+
+    @property
+    def buffers(self) -> dict[str, Memory]:
+        """The raster pipelines' buffers, and the marks of open fiblets, if there are clusters."""
+        held = sum(buffer.size for buffer in self._open.values())
+        return {**super().buffers, **({"open fiblets": Memory(held)} if held else {})}
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        super().release()
+        for buffer in self._open.values():
+            buffer.release()
+        self._open.clear()
+
     def _array(self, program: Any) -> moderngl.VertexArray | None:  # noqa: ARG002 - it has its own
         return None
 
@@ -108,9 +162,11 @@ class MeshPipeline(RasterPipeline):
         array: moderngl.VertexArray | None,  # noqa: ARG002
         program: Any,
         chunk: Chunk,
-        request: DrawRequest,  # noqa: ARG002
+        request: DrawRequest,
     ) -> None:
         chunk.bind_storage()
+        if request.clustered:
+            self._bind_open(chunk)
         groups = -(-chunk.n_fiblets // TASK_FIBLETS)
         for first in range(0, groups, self._max_tasks):
             program["first_group"] = first

@@ -16,6 +16,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Self
 
+from pvfiblets.engine.fiblets.pipelines.compute import CARD_FORMS
 from pvfiblets.engine.gl.capabilities import MESH, MESH_EXT
 
 from ...drawing import drawing_context
@@ -40,6 +41,7 @@ CHECK_SHARE = 0.25  # of the time, for checking fiblets
 CELL_SECONDS = 90.0  # that a cell or a check may take: a driver that hangs is not to use up the time
 CHECKED_FIRST = ("fiblets compute", "fiblets mesh")
 BYTES = 64  # of a buffer for a fiblet, about
+COMPUTE = "fiblets.pipelines.compute"
 QUICKER = 7  # bits by which limits are less of a quick run
 
 FORMS: dict[str, Row] = {MESH_EXT: {}, MESH: {"constants": {"gl.capabilities:MESH_EXT": "none"}}}
@@ -53,9 +55,14 @@ def alternatives(quick: bool) -> dict[str, Row]:
     def calls(fiblets: int) -> Row:
         return {"constants": {f"gl.work_limits:{card}": {"listed": fiblets} for card in cards}}
 
+    def switched(form: str) -> Row:
+        others = [other for other in CARD_FORMS if other != form]
+        return {"constants": {f"{COMPUTE}:CARD_FORMS": others, f"{COMPUTE}:SOFTWARE_FORMS": [form]}}
+
     return {
         "culling none": {"culling": "none"},
-        "32-bit atomics": {"constants": {"fiblets.pipelines.compute:INT64_EXTENSIONS": ["none"]}},
+        "32-bit atomics": {"constants": {f"{COMPUTE}:INT64_EXTENSIONS": ["none"]}},
+        **{f"{form} switched": switched(form) for form in CARD_FORMS},
         **{f"calls of 2^{n} fiblets": calls(1 << n) for n in (21 - less, 25 - less, 28 - less)},
         **{f"prediction level {n}": {"constants": {"culling.pyramid:PREDICTION_LEVEL": n}} for n in (2, 3, 5)},
         "clusters in all sets": {"constants": {"fiblets.data.chunks:CLUSTERED": 0}},
@@ -81,6 +88,7 @@ class CardStudy:
         "frame waited for. *in flight*: the clock's time of a frame while none is waited for; *GPU*: the card's own, "
         "from timestamps. *pass*: medians of the passes of frames waited for. *steady*: 1 where five frames took as "
         "long as the five before them. Clocks, power and temperature are those after the frames; *before* is before.",
+        "*switched*: a form of passes that only graphics cards run, left out on a card, or run by software.",
         "Cases compare with float64 (`pvfiblets gl --check`), and frames with those of the default, bit by bit.",
     )
 

@@ -21,7 +21,7 @@ from .counts import ROUNDS, Calls, counted, frame_lanes, pass_work
 
 __all__ = ["STUDY", "WorkStudy"]
 
-SEGMENTS, QUICK_SEGMENTS = (6e6, 60e6, 434e6), (2e5,)  # of synthetic brains
+SEGMENTS, QUICK_SEGMENTS = (6e6, 60e6, 434e6, 600e6), (2e5,)  # of synthetic brains
 STEP, LENGTH = 0.1, 94.0  # mm: distance of points; mean length of a streamline
 SIZE, QUICK_SIZE = (1920, 1080), (320, 180)
 SLOW, JUMP = 1.14, 120.0  # degrees a frame; and at once

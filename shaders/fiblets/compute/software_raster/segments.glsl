@@ -86,15 +86,30 @@ bool goes_straight(Vertex from, vec3 direction, vec3 here, vec3 next) {
 }
 #endif
 
-// Draws fiblet f and the segment that joins it to the next.
-void draw_fiblet(uint f) {
+#ifndef COVER_APART
+void take(Segment segment) { cover(segment); }
+#else
+void take(Segment segment);    // fiblets/compute/software_raster/cover_apart.glsl
+#endif
+
+Vertex pen;       // up to here a fiblet is drawn
+uint pen_at;      // so many segments
+
+void begin_drawing(uint f) {
     begin_polyline(f);
 #if FEATURE_WIDE_LINES && (FEATURE_PEEL || FEATURE_GATHER_SLICES)
     begin_peel(streamline_of(f), float(points_before(f)));
 #endif
-    Vertex from = vertex_of(walk_point);
+    pen = vertex_of(walk_point);
+    pen_at = 0u;
     next_point(1u);
-    for (uint i = 1u; i <= polyline.count; ++i) {
+}
+
+// Draws on, up to so many segments.
+void draw_until(uint end) {
+    Vertex from = pen;
+    uint i = pen_at + 1u;
+    for (; i <= min(end, polyline.count); ++i) {
         uint first = i - 1u;
         vec3 here = walk_point, delta = walk_delta, ahead = walk_ahead(i);
 #if FEATURE_SUBSAMPLES
@@ -114,7 +129,15 @@ void draw_fiblet(uint f) {
         start_segment(first, to.local, delta, ahead);
         ClippedSegment piece;
         bool any_part = piece_of(from, to, start, cap, piece);
-        if (any_part && drawn) cover(Segment(first, from, to, piece, polyline.steps, ahead, goes_on(i)));
+        if (any_part && drawn) take(Segment(first, from, to, piece, polyline.steps, ahead, goes_on(i)));
         from = to;
     }
+    pen = from;
+    pen_at = i - 1u;
+}
+
+// Draws fiblet f and the segment that joins it to the next.
+void draw_fiblet(uint f) {
+    begin_drawing(f);
+    draw_until(polyline.count);
 }
