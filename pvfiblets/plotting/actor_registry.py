@@ -22,6 +22,7 @@ from vtkmodules.vtkRenderingCore import vtkPicker
 from pvfiblets.antialias import default_antialias
 from pvfiblets.plotting import exports, transparent, visible_picking  # noqa: F401 - registers them with plotters
 from pvfiblets.plotting.call_signature import document
+from pvfiblets.plotting.mesh_arguments import apply, translate
 from pvfiblets.plotting.scalar_bar_labels import label_format
 from pvfiblets.plotting.settings import Given, Setting, Settings
 from pvfiblets.plotting.settings import arguments as settings_of_call
@@ -153,12 +154,16 @@ class ActorRegistry(Generic[A]):
     def add(self, /, source: Any, **arguments: Any) -> A:
         """Make an actor and add it to the plotter."""
         common = {name: arguments.pop(name, one.default) for name, one in Common.DECLARED.items()}
+        of_mesh = {name: arguments.pop(name) for name in self.COMMON.DECLARED if name in arguments}
+        translate(self.ADD, of_mesh, source, arguments, self._plotter.theme)
         known = set(settings_of_call(self._SETTINGS))
         given = Given(self._SETTINGS, arguments)
         own = {name: value for name, value in arguments.items() if name not in known}
         self._check_known(own)
-        actor = self._add_actor(self._make(source, given, **own), **common)
-        if hasattr(source, "IsA") and source.IsA("vtkDataSet"):
+        made = self._make(source, given, **own)
+        apply(self.ADD, of_mesh, made)
+        actor = self._add_actor(made, **common)
+        if hasattr(source, "IsA") and source.IsA("vtkDataSet") and not of_mesh.get("copy_mesh"):
             self._sources[actor.memory_address] = SourceChanges(source, actor)
         return actor
 

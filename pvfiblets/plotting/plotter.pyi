@@ -44,8 +44,12 @@ class _AddFiblets(Protocol):
         opacity: float | str | Sequence[float] | np.ndarray | None = None, transparency: str | int | None = "all",
         line_width: float | None = None, style: Any = "surface", lighting: bool | None = None,
         pipeline: str = "auto", culling: str | None = "auto", fit: str | None = None, cluster: Any = None,
-        name: str | None = None, label: str | None = None, show_scalar_bar: bool | None = None,
-        scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
+        silhouette: bool | None = None, render_lines_as_tubes: bool | None = None, ambient: float | None = None,
+        diffuse: float | None = None, specular: float | None = None, specular_power: float | None = None,
+        metallic: float | None = None, roughness: float | None = None, pbr: bool = False,
+        smooth_shading: bool | None = None, component: int | None = None, nan_opacity: float | None = None,
+        copy_mesh: bool = False, name: str | None = None, label: str | None = None,
+        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
         user_matrix: TransformLike | None = None, reset_camera: bool | None = None, render: bool = True,
         **options: Any,
     ) -> FibletActor: ...
@@ -66,10 +70,14 @@ class _AddSplineTubes(Protocol):
         above_color: ColorLike | None = None, annotations: dict[float, str] | None = None,
         flip_scalars: bool = False, opacity: float | str | Sequence[float] | np.ndarray | None = None,
         lighting: bool | None = None, min_width: float = 1.0, silhouettes: str = "auto", solver: str = "auto",
-        iterations: int | None = None, culling: str | None = "two-phase", name: str | None = None,
-        label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
-        pickable: bool = True, user_matrix: TransformLike | None = None, reset_camera: bool | None = None,
-        render: bool = True,
+        iterations: int | None = None, culling: str | None = "two-phase", silhouette: bool | None = None,
+        render_lines_as_tubes: bool | None = None, ambient: float | None = None, diffuse: float | None = None,
+        specular: float | None = None, specular_power: float | None = None, metallic: float | None = None,
+        roughness: float | None = None, pbr: bool = False, smooth_shading: bool | None = None,
+        component: int | None = None, nan_opacity: float | None = None, copy_mesh: bool = False,
+        name: str | None = None, label: str | None = None, show_scalar_bar: bool | None = None,
+        scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
+        user_matrix: TransformLike | None = None, reset_camera: bool | None = None, render: bool = True,
     ) -> TubeActor: ...
 
 class _SplineTubesComponent(SplineTubesComponent):
@@ -89,10 +97,13 @@ class _AddHaloLines(Protocol):
         below_color: ColorLike | None = None, above_color: ColorLike | None = None,
         annotations: dict[float, str] | None = None, flip_scalars: bool = False,
         opacity: float | str | Sequence[float] | np.ndarray | None = None, lighting: bool = False,
-        smooth: bool = True, min_width: float = 1.0, culling: str | None = "two-phase", name: str | None = None,
-        label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
-        pickable: bool = True, user_matrix: TransformLike | None = None, reset_camera: bool | None = None,
-        render: bool = True,
+        smooth: bool = True, min_width: float = 1.0, culling: str | None = "two-phase", ambient: float | None = None,
+        diffuse: float | None = None, specular: float | None = None, specular_power: float | None = None,
+        metallic: float | None = None, roughness: float | None = None, pbr: bool = False,
+        smooth_shading: bool | None = None, component: int | None = None, nan_opacity: float | None = None,
+        copy_mesh: bool = False, name: str | None = None, label: str | None = None,
+        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
+        user_matrix: TransformLike | None = None, reset_camera: bool | None = None, render: bool = True,
     ) -> HaloLineActor: ...
 
 class _HaloLinesComponent(HaloLinesComponent):

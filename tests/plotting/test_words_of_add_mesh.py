@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import pickle
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
@@ -14,17 +15,19 @@ LIGHT = {"ambient": 0.5, "diffuse": 0.3, "specular": 1.0, "interpolation": "pbr"
 
 
 @pytest.mark.parametrize("add", ADDS)
-def test_light_is_told_to_be_the_propertys(plotter, three_lines, add):
-    for name in ("specular", "ambient", "diffuse", "metallic", "roughness", "specular_power"):
-        with pytest.raises(TypeError, match=rf"{add}\(\) takes no {name}: .*actor\.prop\.{name} = "):
-            getattr(plotter, add)(three_lines, **{name: 0.5})
-    with pytest.raises(TypeError, match="prop.interpolation = 'pbr'"):
-        getattr(plotter, add)(three_lines, pbr=True)
+def test_light_is_that_of_the_property(plotter, three_lines, add):
+    light = {"specular": 0.4, "ambient": 0.3, "diffuse": 0.2, "metallic": 0.7, "roughness": 0.6, "specular_power": 9.0}
+    actor = getattr(plotter, add)(three_lines, pbr=True, smooth_shading=True, **light)
+    assert {name: getattr(actor.prop, name) for name in light} == pytest.approx(light)
+    assert actor.prop.interpolation.name == "PBR"
     with pytest.raises(TypeError, match="smooth as they are"):
-        getattr(plotter, add)(three_lines, smooth_shading=True)
+        getattr(plotter, add)(three_lines, smooth_shading=False)
+    with pytest.raises(ValueError, match="ambient"):
+        getattr(plotter, add)(three_lines, ambient=3.0)
+    assert len(plotter.renderer.actors) == 1
     with pytest.raises(TypeError, match="unexpected keyword argument 'spekular'"):
         getattr(plotter, add)(three_lines, spekular=1.0)
-    name = {"add_spline_tubes": "silhouette", "add_halo_lines": "n_tapered", "add_fiblets": "tube_radius"}[add]
+    name = {"add_spline_tubes": "depth_cue", "add_halo_lines": "n_tapered", "add_fiblets": "tube_radius"}[add]
     with pytest.raises(TypeError, match=rf"takes no {name}: set it on the actor .*actor\.{name} = "):
         getattr(plotter, add)(three_lines, **{name: 1})
     with pytest.warns(UserWarning, match="nothing is drawn"):
@@ -35,6 +38,51 @@ def test_light_is_told_to_be_the_propertys(plotter, three_lines, add):
     assert actor.color == "red"
     actor.prop.color = "green"
     assert actor.color == "green"
+
+
+@pytest.mark.parametrize("add", ADDS)
+def test_a_column_of_vectors_colours(plotter, add):
+    points = np.random.default_rng(0).normal(size=(40, 3)).cumsum(axis=0)
+    mesh = pv.MultipleLines(points)
+    mesh["speed"] = np.random.default_rng(1).uniform(1.0, 5.0, (40, 3))
+    plain = getattr(plotter, add)(mesh, scalars=mesh["speed"][:, 1], copy_mesh=True)
+    for scalars in ("speed", mesh["speed"]):
+        actor = getattr(plotter, add)(mesh, scalars=scalars, component=1)
+        assert actor.clim == plain.clim
+        np.testing.assert_array_equal(actor.scalars, plain.scalars)
+    for wrong, error, words in ((3, ValueError, "give a column of the scalars, 0 to 2"), (-1, ValueError, "0 to 2")):
+        with pytest.raises(error, match=words):
+            getattr(plotter, add)(mesh, scalars="speed", component=wrong)
+    with pytest.raises(TypeError, match="give one column as scalars"):
+        getattr(plotter, add)(mesh, component=1)
+    faint = getattr(plotter, add)(mesh, scalars="speed", component=0, nan_color="red", nan_opacity=0.25)
+    assert faint.nan_color.float_rgba == pytest.approx((1.0, 0.0, 0.0, 0.25), abs=0.01)
+    with pytest.raises(ValueError, match="nan_opacity is 2"):
+        getattr(plotter, add)(mesh, nan_opacity=2)
+
+
+@pytest.mark.parametrize("add", ADDS)
+def test_a_copied_mesh_may_change(plotter, add):
+    points = np.random.default_rng(0).normal(size=(40, 3)).cumsum(axis=0)
+    for copied in (True, False):
+        mesh = pv.MultipleLines(points.copy())
+        actor = getattr(plotter, add)(mesh, copy_mesh=copied, color="red", name="lines")
+        before = actor.bounds
+        mesh.points += 100.0
+        with nullcontext() if copied else pytest.warns(UserWarning, match="points of the PolyData changed"):
+            plotter.render()
+        assert actor.bounds == before
+
+
+def test_outlines_and_round_lines_of_scripts(plotter, three_lines):
+    fiblets = plotter.add_fiblets(three_lines, silhouette=True, render_lines_as_tubes=True)
+    assert fiblets.halos
+    assert fiblets.prop.render_lines_as_tubes
+    assert plotter.add_spline_tubes(three_lines, silhouette=True, render_lines_as_tubes=True).silhouette
+    with pytest.raises(TypeError, match=r"takes no silhouette: set actor.halos"):
+        plotter.add_fiblets(three_lines, silhouette={"color": "red"})
+    with pytest.raises(TypeError, match="tubes are round"):
+        plotter.add_spline_tubes(three_lines, render_lines_as_tubes=False)
 
 
 @pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes"])

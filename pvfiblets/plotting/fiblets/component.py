@@ -20,6 +20,7 @@ from pvfiblets.plotting.components import register
 from pvfiblets.plotting.fiblets.picking import MousePicking
 from pvfiblets.plotting.fiblets.settings import FibletSettings
 from pvfiblets.plotting.filter_state import unique_name
+from pvfiblets.plotting.mesh_arguments import ThickLineCommon
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given, Setting
 from pvfiblets.plotting.unsupported_arguments import why_not
@@ -60,6 +61,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
     """
 
     _SETTINGS = FibletSettings
+    COMMON = ThickLineCommon
     NAME, ADD = "fiblets", "add_fiblets"
 
     def __init__(self, plotter: pv.BasePlotter) -> None:

@@ -15,6 +15,7 @@ import pyvista as pv
 from pvfiblets.plotting.call_signature import plotter_method
 from pvfiblets.plotting.components import register
 from pvfiblets.plotting.halos.settings import HaloLineSettings, HaloPointSettings
+from pvfiblets.plotting.mesh_arguments import LineCommon
 from pvfiblets.plotting.screenshot import PrintableComponent
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
@@ -53,6 +54,7 @@ class HaloLinesComponent(PrintableComponent["HaloLineActor"]):
     """
 
     _SETTINGS = HaloLineSettings
+    COMMON = LineCommon
     NAME, ADD = "halo_lines", "add_halo_lines"
 
     def _make(

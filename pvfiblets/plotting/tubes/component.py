@@ -16,6 +16,7 @@ import pyvista as pv
 from pvfiblets.plotting.actor_registry import ActorRegistry
 from pvfiblets.plotting.call_signature import plotter_method
 from pvfiblets.plotting.components import register
+from pvfiblets.plotting.mesh_arguments import ThickLineCommon
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.tubes.settings import TubeSettings
@@ -52,6 +53,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
     """
 
     _SETTINGS = TubeSettings
+    COMMON = ThickLineCommon
     NAME, ADD = "spline_tubes", "add_spline_tubes"
 
     def _make(
