@@ -26,7 +26,8 @@ WAYS = {
     "polylines-aliased": "VTK lines, aliased",
     "tubes": "VTK tubes",
 }
-SCENES = ("whole brain", "tubes", "halos")
+SCENES = ("brain of 1,100,000 segments", "brain of 6,000,000 segments", "tubes", "halos")
+
 
 def panels(rows: int, columns: int) -> tuple[Figure, Any]:
     """Return a figure and its panels."""
@@ -55,7 +56,7 @@ def line(panel: Any, name: str, points: Iterable[tuple[float, float]]) -> None:
 
 def errors() -> Figure:
     """Error against run time of a finished image, for each kind of line that the record has."""
-    study = Report.load(FOLDER / "report" / "amd-epyc-antialias").studies[0]
+    study = Report.load(FOLDER / "report" / "intel-xeon-antialias").studies[0]
     records = [one for one in study.records if one.data.startswith(tuple(f"{name}," for name in SCENES))]
     (finished,) = (pair for pair in study.axes if pair.key == "rest")
     return in_panels(study, records, finished)

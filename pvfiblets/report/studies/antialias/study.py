@@ -335,7 +335,7 @@ def _record(subject: Subject, variant: Variant, window: PictureWindow, reference
     height, width = reference.shape[:2]
     return Record(
         data=f"{subject.name}, {width} x {height}",
-        group=subject.name.replace(" ", "-"),
+        group=subject.name.replace(",", "").replace(" ", "-"),
         approximation="the mean of what a pixel shows",
         method=variant.method,
         setting=variant.setting,
