@@ -74,14 +74,15 @@ def in_panels(study: StudyResult, records: list[Record], pair: Axes) -> Picture:
     of_methods = [name for name in methods if any(record.method == name for record in records)]
     colours = _assigned(of_methods if len(methods) > len(COLOURS) else methods, COLOURS)
     markers = _assigned([s for s in settings if any(record.setting == s for record in records)], MARKERS)
-    rows = -(-len(sets) // COLUMNS)
+    across = 2 if len(sets) == 4 else min(COLUMNS, len(sets))  # four fill a square
+    rows = -(-len(sets) // across)
     of_settings = [name for name in settings if any(record.setting == name for record in records)]
     handles = _legend(of_methods, of_settings, colours, markers, pair)
-    columns = min(4, max(2, 2 * min(COLUMNS, len(sets))))
+    columns = min(4, max(2, 2 * across))
     below = 0.3 + 0.2 * -(-len(handles) // columns)  # inches for the legend
-    height, width = 3.1 * rows + below + 1.0, 4.3 * min(COLUMNS, len(sets)) + 0.4
+    height, width = 3.1 * rows + below + 1.0, 4.3 * across + 0.4
     picture = Picture(figsize=(width, height))
-    panels = picture.subplots(rows, min(COLUMNS, len(sets)), sharex=True, sharey=True, squeeze=False)
+    panels = picture.subplots(rows, across, sharex=True, sharey=True, squeeze=False)
     # Margins in inches: matplotlib's own layout takes as long as all the drawing.
     sides = {"left": 0.75 / width, "right": 1.0 - 0.1 / width}
     picture.subplots_adjust(**sides, bottom=(below + 0.5) / height, top=1.0 - 0.6 / height, wspace=0.06, hspace=0.22)
