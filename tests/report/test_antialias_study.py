@@ -30,7 +30,7 @@ def measured(small):
 @pytest.mark.more
 def test_refined_pictures_are_the_nearest_to_the_mean_and_cost_as_many_frames(measured):
     groups = {group for group, _ in measured}
-    assert groups == {"brain-of-3,000-segments", "bundle", "tubes", "halos", "bundle-and-surface", "lines-drawn-by-VTK"}
+    assert groups == {"brain-of-3000-segments", "bundle", "tubes", "halos", "bundle-and-surface", "lines-drawn-by-VTK"}
     for group in groups:
         refined, off = measured[group, "refined"], measured[group, "off"]
         assert refined.default
