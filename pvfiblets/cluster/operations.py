@@ -282,7 +282,7 @@ class Operation:
     # refuses options whose file, with the suffix `to`, cannot be written; None if it makes no file
     check_file: Callable[[Mapping[str, Any]], object] | None = None
     takes: tuple[str, ...] = ()  # suffixes of sources; any format if empty
-    # options that may be paths, in which names between braces stand for what a source's name says
+    # options that may be paths; names between braces there are replaced by parts of the source's name
     paths: tuple[str, ...] = ()
     needs: tuple[tuple[str, ...], ...] = ()  # options; exactly one must be given
 

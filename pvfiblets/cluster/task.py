@@ -37,7 +37,7 @@ _TURN = threading.Lock()
 
 @dataclass(frozen=True)
 class Job:
-    """What is to be done to one file."""
+    """An operation on one file."""
 
     operation: str
     source: str  # absolute path

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ..query.regions.shapes import Region
     from .fiblets.data.sampled_volume import VolumeSource
 
-MAX_CLIP_PLANES = 8  # as many as OpenGL itself promises (GL_MAX_CLIP_DISTANCES); a box takes six
+MAX_CLIP_PLANES = 8  # OpenGL's guaranteed GL_MAX_CLIP_DISTANCES; a box takes six
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,7 +39,7 @@ _TYPES = {
 }
 """vtkIdType is written as 32 bits whatever its size in memory; long has 8 bytes on Unix."""
 
-_CELLS = ("VERTICES", "LINES", "POLYGONS", "TRIANGLE_STRIPS")  # in the order in which cell data count the cells
+_CELLS = ("VERTICES", "LINES", "POLYGONS", "TRIANGLE_STRIPS")  # in the order of cell data
 
 LAST_NUMBER = "last number, at the very end of the file, perhaps cut short (kept)"
 

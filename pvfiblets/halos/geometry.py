@@ -104,7 +104,7 @@ class HaloLines(_AtPoints):
         return np.flatnonzero(inner)
 
     def pieces(self, kept: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
-        """Return offsets of what is left of the lines with some of the segments, ``(n_segments,)`` bool."""
+        """Return the offsets of the pieces that remain of the lines with some segments, ``(n_segments,)`` bool."""
         # All points are in pieces, those without a segment each in its own.
         found: npt.NDArray[np.int64] = np.union1d(self.offsets, self.segment_starts[~kept] + 1)
         return found

@@ -10,7 +10,7 @@ __all__ = ["DISPLACEMENTS", "TABLE_SIZE", "HaloStyle"]
 
 DISPLACEMENTS = ("linear", "square", "square root")  # displacement functions by name (paper: figure 17)
 
-TABLE_SIZE = 64  # entries of a displacement function given as a table may be as many as that
+TABLE_SIZE = 64  # greatest number of entries of a displacement table
 
 MAX_TAPERED = 1000
 

@@ -20,7 +20,7 @@ FOLLOWED = ("cursor", "center")  # places in the picture whose depth may be the 
 
 APERTURE = 0.06  # default diameter of the lens, as a share of the visible height at the distance in focus
 
-NEAR_CURSOR = 2  # pixels around the mouse in which things are looked for: lines are thin
+NEAR_CURSOR = 2  # search radius around the mouse, pixels: lines are thin
 
 SETTLED = 1e-3  # relative error at which a moving focus counts as arrived
 

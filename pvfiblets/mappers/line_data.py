@@ -105,7 +105,7 @@ class LineData:
 
     def _runs(self, before: Ints, share: Floats, begins: Flags) -> LineData:
         """Return lines through places, a share of the way behind points, a new one where one begins."""
-        # What is left of a line as a lone point goes.
+        # Pieces of a single point are dropped.
         starts = np.flatnonzero(begins)
         counts = np.diff(starts, append=len(before))
         owners = self.owners[before[starts]]

@@ -27,7 +27,7 @@ from pvfiblets.plotting.scalar_bar_labels import label_format
 from pvfiblets.plotting.settings import Given, Setting, Settings
 from pvfiblets.plotting.settings import arguments as settings_of_call
 from pvfiblets.plotting.shared_settings import Common
-from pvfiblets.plotting.source_changes import SourceChanges
+from pvfiblets.plotting.source_changes import SourceChanges, is_dataset
 from pvfiblets.plotting.unsupported_arguments import why_not
 
 
@@ -163,7 +163,7 @@ class ActorRegistry(Generic[A]):
         made = self._make(source, given, **own)
         apply(self.ADD, of_mesh, made)
         actor = self._add_actor(made, **common)
-        if hasattr(source, "IsA") and source.IsA("vtkDataSet") and not of_mesh.get("copy_mesh"):
+        if is_dataset(source) and not of_mesh.get("copy_mesh"):
             self._sources[actor.memory_address] = SourceChanges(source, actor)
         return actor
 

@@ -15,6 +15,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkStringArray, vtkVariant, vtkVariantArray
 
 from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.plotting.source_changes import is_dataset
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -53,7 +54,7 @@ class ColourSettings:
 
 def active_scalars(source: Any, color: Any, rgb: bool | None, *, points: bool = False) -> str | None:
     """Return what colours a data set of VTK's that came without ``scalars``, by the rules of PyVista's `add_mesh`."""
-    if (color is not None and not rgb) or not (hasattr(source, "IsA") and source.IsA("vtkDataSet")):
+    if (color is not None and not rgb) or not is_dataset(source):
         return None
     mesh = pv.wrap(source)
     found: str | None = mesh.point_data.active_scalars_name if points else mesh.active_scalars_name

@@ -9,6 +9,7 @@ import pyvista as pv
 
 from pvfiblets.plotting.settings import Argument
 from pvfiblets.plotting.shared_settings import Common
+from pvfiblets.plotting.source_changes import is_dataset
 from pvfiblets.plotting.unsupported_arguments import why_not
 
 OUTLINES = {"add_fiblets": "halos", "add_spline_tubes": "silhouette"}
@@ -66,7 +67,7 @@ def translate(add: str, given: dict[str, Any], source: Any, arguments: dict[str,
 
 def _column(add: str, component: int, scalars: Any, source: Any) -> np.ndarray:
     rows = scalars
-    if isinstance(scalars, str) and hasattr(source, "IsA") and source.IsA("vtkDataSet"):
+    if isinstance(scalars, str) and is_dataset(source):
         rows = pv.wrap(source).point_data.get(scalars)
     if rows is None or isinstance(rows, str) or np.ndim(rows) != 2:
         raise TypeError(why_not(add, "component"))

@@ -8,6 +8,8 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
+from pvfiblets.plotting.source_changes import is_dataset
+
 Preference: TypeAlias = Literal["point", "cell"]
 
 _OTHER = {"point": "line", "cell": "point"}
@@ -20,7 +22,7 @@ def with_preference(source: Any, preference: Preference) -> Any:
     if preference not in _OTHER:
         raise ValueError(f"preference is {preference!r}; choose 'point' or 'cell'")
     other = _OTHER[preference]
-    if hasattr(source, "IsA") and source.IsA("vtkDataSet"):
+    if is_dataset(source):
         import pyvista as pv
 
         mesh = pv.wrap(source)

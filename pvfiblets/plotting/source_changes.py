@@ -9,6 +9,11 @@ import warnings
 from typing import Any
 
 
+def is_dataset(source: Any) -> bool:
+    """Return whether a source is a data set of VTK's, PyVista's included."""
+    return hasattr(source, "IsA") and bool(source.IsA("vtkDataSet"))
+
+
 class SourceChanges:
     """The state in which a data set was added."""
 

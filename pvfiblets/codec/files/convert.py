@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 
 __all__ = ["compress_file"]
 
-SAMPLE_POINTS = 1_000_000  # about so many are compared where a sample will do
+SAMPLE_POINTS = 1_000_000  # compared points of a large file, about
 
 
 def compress_file(

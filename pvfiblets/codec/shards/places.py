@@ -96,7 +96,7 @@ def _keys(fiblets: FibletSet, firsts: Ints) -> npt.NDArray[np.uint64]:
 
 
 def _cuts(sizes: Ints, size: int) -> Ints:
-    """Return the bounds of stretches of at most so many bytes; a single one may be larger."""
+    """Return the bounds of stretches that keep to a limit of bytes, unless one item is larger."""
     # They are as even as can be: 10 bytes of 1 each, at most 4 together, are 4, 3, 3 rather than 4, 4, 2.
     if not len(sizes):
         return np.zeros(1, np.int64)

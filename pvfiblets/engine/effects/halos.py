@@ -12,7 +12,7 @@ from .screen import ScreenEffect
 
 __all__ = ["WIDEST", "HaloPass"]
 
-WIDEST = 24.0  # pixels of the finished picture: a halo of more, of a line near the viewer, is drawn with so many
+WIDEST = 24.0  # greatest width of a halo, pixels of the finished picture; lines near the viewer would have wider ones
 
 TILE = 8  # pixels of a tile's side: as wide as a usual halo, so that few tiles are looked into
 

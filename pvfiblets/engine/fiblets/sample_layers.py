@@ -131,22 +131,23 @@ class SampleLayers:
         samples = GBuffer(self._ctx, _times(SIDE, size))
         self._held.callback(samples.release)
         entries, listed = self._target(size, 4)
-        shown, claimed = self._target(samples.size, 1) if len(sets) > 1 else (samples.owner, None)
+        of_sets, claimed = self._target(samples.size, 1) if len(sets) > 1 else (samples.owner, None)
         steps = len(corners) * len(lines)
         for part, corner in enumerate(corners):
             adds = False
             for step, (number, one) in enumerate(lines, part * len(lines)):
-                if _meet(one.rectangle, (*corner, *size)) or (step + 1 == (part + 1) * len(lines) and not adds):
+                last = step + 1 == (part + 1) * len(lines)
+                if _meet(one.rectangle, (*corner, *size)) or (last and not adds):
                     self._ctx.scissor = None
                     for _ in one.draw(*_subsampled(one, corner, samples.size), samples, adds):
                         yield step / steps
                     adds = True
                     if claimed is not None:
                         self._claim(samples, claimed, number)
-                if step + 1 < (part + 1) * len(lines):
+                if not last:
                     yield (step + 1) / steps
             with self._gl.framebuffers_kept():
-                self._sort(whole, samples, shown, entries, listed, corner)
+                self._sort(whole, samples, of_sets, entries, listed, corner)
             yield (part + 1) / len(corners)
         self._held.close()
         for target in self._targets:
@@ -160,7 +161,7 @@ class SampleLayers:
         return target
 
     def _claim(self, samples: GBuffer, claimed: moderngl.Framebuffer, number: int) -> None:
-        """Note the set of the samples in which it has shown."""
+        """Write a set's number to the samples that it has just taken."""
         program, array = self._programs.screen("fiblets/samples/claim.frag", [])
         _use(program, {"drawn_owner": samples.owner})
         program["set"] = number

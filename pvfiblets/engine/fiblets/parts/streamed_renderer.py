@@ -281,7 +281,7 @@ class StreamedRenderer(NearestOnly):
 
     def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
         """Return the least and the greatest of a per-point value; see :meth:`.FibletRenderer.value_range`."""
-        # What is measured is measured in every part, which takes as long as to fetch them all.
+        # Computed measures need every part, so this takes as long as fetching them all.
         self._check_alive()
         ranges = []
         for number in range(len(self._parts)):
