@@ -44,11 +44,6 @@ float displacement(float x) {
 #endif
 }
 
-float mask(float x) {
-    float within = clamp(x, 0.0, 1.0);
-    return sqrt(within * (2.0 - within));
-}
-
 void main() {
     uint beyond = 0u;       // which end of the segment the pixel is beyond
     vec2 from_start = gl_FragCoord.xy - half_picture - varying_ends.xy;
@@ -66,7 +61,7 @@ void main() {
 #if FEATURE_CLIP_REGION
     if (!region_keeps(ivec2(gl_FragCoord.xy), 1.0 - far)) discard;       // of a halo its line counts
 #endif
-    float w = 1.0 / over_w, m = 1.0, cue = 0.0;
+    float w = 1.0 / over_w, x = 1.0, rise = 0.0, cue = 0.0;      // rise: of x, along the segment
 #if FEATURE_HALO_CUE
     cue = varying_cue.x + t * (varying_cue.y - varying_cue.x);
 #endif
@@ -74,24 +69,48 @@ void main() {
     float r = length(from_start) * w / reach.y, share = reach.x / reach.y;
 #if FEATURE_HALO_TAPER
     float u = varying_mask.x + t * (varying_mask.y - varying_mask.x);
-    m = mask(5.0 * min(u, 1.0 - u));
+    x = 5.0 * min(u, 1.0 - u);
+    rise = (u < 0.5 ? 5.0 : -5.0) * (varying_mask.y - varying_mask.x);
 #endif
 #if FEATURE_HALO_FILTER
     vec2 change = varying_filter.yw - varying_filter.xz;      // of number.x, and of how much that changes per mm
     vec2 number = t < 0.5 ? varying_filter.xz + t * change : varying_filter.yw - (1.0 - t) * change;      // exact at both ends
-    float inside = min(number.x - halo_filter_low, halo_filter_high - number.x);
+    float above = number.x - halo_filter_low, below = halo_filter_high - number.x;
     if (!(number.x >= halo_filter_low && number.x <= halo_filter_high)) discard;       // NaN as well
     float fall = number.y * halo_filter_taper;
-    if (fall > 0.0) m = min(m, mask(inside / fall));
+    if (fall > 0.0 && min(above, below) < x * fall) {
+        x = min(above, below) / fall;
+        rise = (above < below ? change.x : -change.x) / fall;
+    }
 #endif
+    x = clamp(x, 0.0, 1.0);
+    float m = sqrt(x * (2.0 - x));
     if (!(r <= m)) discard;
     float edge = share * m;
     bool line = r <= edge;
 #if FEATURE_EDGES
-    // A line lies between its edges, a halo between the line's and its own. Both may be drawn wider than they are.
-    float pixels = m * over_w, away = length(from_start), narrower = (reach.x - own_reach(cue, w)) * pixels;
-    vec2 outwards = away > 1e-4 ? from_start / away : vec2(1.0, 0.0), outer = reach * pixels - narrower;
-    edges = packed_edges(outwards, (line ? outer.x : outer.y) - away, line ? 2.0 * outer.x : outer.y - outer.x, 0u);
+    // A line lies between its edges, a halo between the line's and its own. Both may be drawn wider than they are, and run
+    // aslant where the mask narrows them.
+    float away = length(from_start), narrower = (reach.x - own_reach(cue, w)) * over_w * m;
+    vec2 outer = reach * over_w * m - narrower, outwards = away > 1e-4 ? from_start / away : vec2(1.0, 0.0);
+    bool inwards = !line && away - outer.x < outer.y - away;
+    float half_width = line || inwards ? outer.x : outer.y;
+    vec2 n = outwards;
+    uint end = 0u;
+#if !FEATURE_HALO_POINTS
+    float steep = (1.0 - x) / max(m * m, 1e-6) * rise * (varying_depths.x / over_w) * (varying_depths.y / over_w);
+    steep /= max(dot(axis, axis), 1e-30);
+    n -= half_width * steep * axis;
+    // Ends that nothing goes on beyond: half a pixel away at most, in thirds of a pixel (frame/edges.glsl).
+    float pixels = length(axis), from_end = (1.0 - place) * pixels;
+    bool begins = (varying_item & FREE_START) != 0u && place * pixels < 0.5, ends = (varying_item & FREE_END) != 0u && from_end < 0.5;
+    bool turned = (n.x * axis.y < n.y * axis.x) != inwards;      // whether n, turned to the left, points to the start
+    uint third = uint((begins ? place * pixels : from_end) * 3.0 + 0.5);
+    if (begins || ends) end = begins && ends ? 7u : begins == turned ? 2u + third : 5u - third;
+#endif
+    if (inwards) n = -n;
+    float slant = inversesqrt(dot(n, n)), within = (inwards ? away - half_width : half_width - away) * slant;
+    edges = packed_edges(n, within, (line ? 2.0 * outer.x : outer.y - outer.x) * slant, end);
 #endif
     float d = line ? 0.0 : halo_displacement * displacement(r);
     float back = d * (halo_depth_per_mm + halo_depth_swing / (w * (w + halo_w_per_mm * d)));

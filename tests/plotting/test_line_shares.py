@@ -97,6 +97,38 @@ def test_tubes_that_are_slanted_to_the_view_are_as_wide(plotter, add, pipeline, 
     assert shown["coverage"].sum() == pytest.approx(shown[64].sum(), rel=0.12)
 
 
+@pytest.mark.parametrize("add", ["halos", "tapering halos", "tubes"])
+def test_crowded_lines_err_much_less_than_hard_edges(plotter, add):
+    """Lines before lines, ends of lines, and lines that taper; the truth is the mean of pictures with hard edges."""
+    lines = smooth_lines(60, seed=5)
+    if add == "tubes":
+        plotter.add_spline_tubes(lines, radius=1.0, **WHITE | {"lighting": True})
+    else:
+        colours = {"color": "white", "halo_color": "gray"}
+        tapering = add == "tapering halos"
+        plotter.add_halo_lines(lines, line_width=2, strip_width=10, tapering=tapering, smooth=False, **colours)
+    plotter.window_size = 160, 120
+    plotter.enable_parallel_projection()
+    plotter.camera_position = [(0, 0, 200), (0, 0, 0), (0, 1, 0)]
+    plotter.camera.parallel_scale = 60
+    plotter.renderer.ResetCameraClippingRange()
+    shown = {}
+    for how in ("off", "coverage", 64):
+        plotter.picture.antialias = how
+        plotter.show(auto_close=False) if plotter._first_time else plotter.render()
+        shown[how] = np.asarray(plotter.screenshot(None)).astype(float)
+    off, coverage = (np.sqrt(((shown[how] - shown[64]) ** 2).mean()) for how in ("off", "coverage"))
+    assert coverage < 0.6 * off
+
+
+def smooth_lines(n, *, seed):
+    """Return curved lines in a box of 120 mm, of 40 points each, which cross each other."""
+    random = np.random.default_rng(seed)
+    t = np.linspace(-1.0, 1.0, 40)[:, None]
+    curves = random.normal(size=(n, 4, 3)) * np.array([25.0, 30.0, 10.0, 10.0])[:, None]
+    return [a + t * b + t**2 * c + t**3 * d for a, b, c, d in curves]
+
+
 @pytest.fixture
 def found(plotter):
     """Return a function: the shares that a picture shows, one pixel to a millimetre."""

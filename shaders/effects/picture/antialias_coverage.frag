@@ -10,10 +10,12 @@
 //   # # .       a pixel with a line       shows the background: the three neighbours that show no line and are not in front of it;
 //                                         if all show lines, those lines, as between lines there are others
 //
-// Only lines nearer than its own depth cover a pixel without a line: lines do not run over a mesh that hides them.
+// Only lines nearer than its own depth cover a pixel without a line: lines do not run over a mesh that hides them. A neighbour's
+// band that covers the middle of a pixel with a line lies behind that line, however deep it is at the neighbour: halos and tubes
+// are not equally deep across.
 //
 // Thin lines are drawn up to a pixel beside where they run (fiblets/segments/thin_line_rule.glsl): a pixel without a line whose
-// middle the band of one next to it covers takes that one for its own in all four quarters.
+// middle the band of one next to it covers, a pixel wide at most, takes that one for its own in all four quarters.
 //
 //   shown      of visible_edges.frag, with a border of one texel
 //   shift      from a pixel of the target to one of it
@@ -85,6 +87,7 @@ uint lines[9];
 #define BEGIN(k, right, up) \
     bands[k] = band_of(unpacked_edges(around[k].y), -vec2(right, up), around[k].y != 0u && (line || around[k].x < around[OWN].x)); \
     behind[k] = line && around[k].y == 0u && around[k].x > around[OWN].x ? 1u : 0u; \
+    if (line && abs(bands[k].away) <= bands[k].size) around[k].x = max(around[k].x, around[OWN].x); \
     lines[k] = line && around[k].y != 0u ? 1u : 0u; \
     visible[k] = shares[k] = 0u;
 
@@ -105,7 +108,7 @@ uint lines[9];
       shares[c] += left * (backs > 0u ? behind[c] : lines[c]); \
       shares[OWN] += n == 0u ? left : 0u; }
 #define ADOPT(k) \
-    if (abs(bands[k].away) <= bands[k].size && around[k].x < depth) { depth = around[k].x; bands[OWN] = bands[k]; of_own = around[k].z; }
+    if (abs(bands[k].away) <= bands[k].size && bands[k].size <= 0.5 && around[k].x < depth) { depth = around[k].x; bands[OWN] = bands[k]; of_own = around[k].z; }
 #define SHARE(k, right, up) shares[k] += SAMPLE * count(visible[k]);
 #define ADD(k, right, up) \
     red_blue += shares[k] * (around[k].z & 0xFF00FFu); \

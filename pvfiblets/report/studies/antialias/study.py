@@ -165,7 +165,7 @@ class AntialiasStudy:
         "Errors are root mean squares over the pixels that show anything, beside the mean of 256 pictures (64 in quick "
         "runs) whose camera is moved on a regular grid in the pixel: a box filter one pixel wide. It is made for each "
         "scene without any smoothing, of lines of their full width (OpenGL's own lines of one pixel are thinner where "
-        "they are slanted); *p99* and *max* are of the finished picture.",
+        "they are slanted), of halos that do not blend with lines; *p99* and *max* are of the finished picture.",
         "*MSAA*, *SSAA* and *FXAA* are VTK's own. MSAA smooths the meshes in a scene, no lines or tubes of this "
         "program, and averages light, not colours: its error is partly that. SSAA has a wider filter. *lines drawn by "
         "VTK*: the lines of *bundle* by ``add_mesh``; there, *refined* is set, since nothing of this program is "
@@ -271,8 +271,11 @@ class PictureWindow(Window):
 
         window, total = self.plotter.render_window, np.zeros(())
         thin = [actor for actor in self.plotter.fiblets if actor.line_width == 1.0]
+        smooth = [actor for actor in self.plotter.halo_lines if actor.smooth]
         for actor in thin:
             actor.line_width = WHOLE
+        for actor in smooth:
+            actor.smooth = False
         places = (np.arange(side) + 0.5) / side - 0.5
         try:
             for x in places:
@@ -285,6 +288,8 @@ class PictureWindow(Window):
         finally:
             for actor in thin:
                 actor.line_width = 1.0
+            for actor in smooth:
+                actor.smooth = True
         return total / side**2
 
 
