@@ -58,8 +58,9 @@ class Limits:
     clustered: bool = False
 
     def visibility_bytes(self, n_fiblets: int) -> int:
-        """Bytes of those marks."""
-        return -(-n_fiblets // 32) * _VISIBILITY_BYTES[self.marked_by]
+        """Bytes of those marks, and of the mesh pipeline's marks of open fiblets."""
+        opened = 8 if self.clustered and self.marked_by == "texture" else 0
+        return -(-n_fiblets // 32) * (_VISIBILITY_BYTES[self.marked_by] + opened)
 
     @classmethod
     def of(
