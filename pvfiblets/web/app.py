@@ -121,6 +121,7 @@ class Explorer(TrameApp):
         self.scene.watch(lambda _: self.refresh())
         self.scene.watch(lambda _: self.files.keep_soon())
         self.state.change("tab")(lambda tab, **_: self._show_info() if tab == "info" else None)
+        self.state.change("tool")(lambda **_: self.selecting.end_measuring())
         self.refresh()
         self.server.controller.on_server_ready.add(lambda **_: self.files.open_given())
 

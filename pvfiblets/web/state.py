@@ -61,6 +61,7 @@ class Page:
     background: str = "#000000"
     picture: Record = field(default_factory=dict)  # the size of one to be saved
     edges: Record = field(default_factory=dict)  # anatomical letters at the picture's edges
+    measuring: bool = False  # whether the first of two clicks was taken
     measured: list[str] = field(default_factory=list)  # distances, for people
     no_room: str = ""  # which colour bars are not shown
 

@@ -15,7 +15,7 @@ KEYS = (
     ("5", "parallel or perspective"),
     ("Esc", "turn, move and zoom with the pointer"),
     ("P B L", "pick, box, lasso; with Shift add to the selection"),
-    ("M", "measure between two points"),
+    ("M", "measure: two clicks, or a drag"),
     ("X", "slices, or the 3-D view alone"),
     ("arrows  Page Up Down", "in a pane: move the cross-hair, go through slices"),
     ("N E F U J W", "on slices: brush, erase, fill, outline, ball, grow"),

@@ -378,6 +378,10 @@ def _view(app: Any) -> None:
                 )  # fmt: skip
             html.Div("{{ no_room }}", v_if="no_room", data_value="no-room")
             html.Div(
+                "{{ measuring ? 'Click the second point' : 'Click two points, or drag' }} (Esc: stop)",
+                v_if="tool === 'measure'", data_value="measuring",
+            )  # fmt: skip
+            html.Div(
                 "Click where {{ placing_name }} shall be (Esc: stop)", v_if="tool === 'place'", data_value="placing"
             )
         with html.Div(
