@@ -339,13 +339,15 @@ class Explorer(TrameApp):
 
     def undo(self) -> None:
         """Undo the last change."""
-        if self.history.undo() is not None:
+        if (what := self.history.undo()) is not None:
             self.refresh()
+            self.say(f"Undone: {what}")
 
     def redo(self) -> None:
         """Redo the last undone change."""
-        if self.history.redo() is not None:
+        if (what := self.history.redo()) is not None:
             self.refresh()
+            self.say(f"Redone: {what}")
 
     # Frames
 

@@ -18,6 +18,7 @@ KEYS = (
     ("M", "measure: two clicks, or a drag"),
     ("X", "slices, or the 3-D view alone"),
     ("arrows  Page Up Down", "in a pane: move the cross-hair, go through slices"),
+    ("G", "on slices: type the position"),
     ("N E F U J W", "on slices: brush, erase, fill, outline, ball, grow"),
     ("comma, full stop", "previous, next volume of an image"),
     ("V", "show or hide the chosen layer"),

@@ -310,6 +310,10 @@ def build(app: Any) -> None:
                 ui.number_field(style="width: 52px", value=("brush",),
                                 change=(paint.set_brush, "[$event.target.value]"), aria_label="Radius, mm")  # fmt: skip
                 html.Span("mm", classes="pv-small")
+        html.Div(
+            "The list under each region chooses which streamlines stay visible.", classes="pv-small px-3 pt-1",
+            data_value="painted-use",
+        )  # fmt: skip
         with html.Div(v_for="r in painting.regions", key="r.name", data_painted=("r.name",), classes="pv-region"):
             with html.Div(classes="pv-pair px-3 pt-1"):
                 eye("r.visible", click=(paint.set, "[r.name, 'visible', !r.visible]"))
