@@ -22,6 +22,16 @@
       window.addEventListener("pagehide", () => sessionStorage.setItem("pvfiblets-said", String(get("toast_number"))));
     } catch { /* a browser that keeps nothing */ }
     recall();
+    describe();
+  };
+
+  // trame gives the image of the scene no text.
+  const describe = () => {
+    const area = document.querySelector("#pv-view");
+    if (!area) return setTimeout(describe, 50);
+    const name = () => area.querySelectorAll("img:not([alt])").forEach((image) => { image.alt = "Rendered scene"; });
+    new MutationObserver(name).observe(area, { childList: true, subtree: true });
+    name();
   };
 
   // Light or dark is kept by the browser; a view that others see, too, is left as it is.

@@ -76,6 +76,7 @@ def _dialog(name: str, title: str, width: int) -> Any:
         update_modelValue=f"dialog = !$event && dialog === '{name}' ? '' : dialog",
         max_width=width,
         scrollable=True,
+        aria_label=title,
     )
     with dialog:
         card = v3.VCard(id=f"dialog-{name}")

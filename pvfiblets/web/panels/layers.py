@@ -118,6 +118,7 @@ def _controls(app: Any) -> None:
         v_else_if="p.type === 'choice'",
         items=("p.items",),
         model_value=("p.index",),
+        aria_label=("p.label",),
         update_modelValue=(app.set_choice, "[chosen, p.name, $event]"),
     )
     ui.switch(

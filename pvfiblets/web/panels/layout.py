@@ -8,6 +8,7 @@ from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import client, rca
 
 from pvfiblets.web.panels import atlas_tab, dialogs, matrix_panel, painting_tab, slices_tab, tabs
+from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels import layers as panels
 from pvfiblets.web.panels.elements import html, v3
 from pvfiblets.web.panels.painting_tab import PAINTING
@@ -190,15 +191,18 @@ def build(app: Any) -> Any:
     with VAppLayout(app.server, theme=("dark ? 'dark' : 'light'",)) as layout:
         client.Style(STYLE)
         with v3.VLayout(style="height: 100vh; height: 100dvh"):
+            html.H1("pvfiblets", classes="d-sr-only")
             _bar(app)
             with v3.VNavigationDrawer(
-                v_model=("left_open", True), width=312, location="left", mobile_breakpoint=("900",), id="left"
+                v_model=("left_open", True), width=312, location="left", mobile_breakpoint=("900",), id="left",
+                aria_label="Layers and properties",
             ):
                 with html.Div(style="display: flex; flex-direction: column; height: 100%"):
                     panels.layers(app)
                     panels.properties(app)
             with v3.VNavigationDrawer(
-                v_model=("right_open", True), width=328, location="right", mobile_breakpoint=("1100",), id="right"
+                v_model=("right_open", True), width=328, location="right", mobile_breakpoint=("1100",), id="right",
+                aria_label="Tools",
             ):
                 tabs.build(app)
             with v3.VMain(style="position: relative; height: 100%"):
@@ -236,7 +240,7 @@ def _wide(app: Any) -> None:
             title, size="small", variant="text", classes="px-2 text-none", data_view=name,
             click=(app.camera.view, f"['{name}']"),
         ):  # fmt: skip
-            v3.VTooltip(f"Look {hint}", activator="parent", location="bottom")
+            ui.tooltip(f"Look {hint}")
     _icon("mdi-swap-horizontal", "The other side (0)", click=app.camera.flip, name="flip")
     _icon("mdi-fit-to-screen-outline", "Show everything (R)", click=app.camera.reset, name="reset")
     _icon(
@@ -290,16 +294,17 @@ def _folded(app: Any) -> None:
 def _icon(icon: str, hint: str, *, name: str | None = None, **rest: Any) -> None:
     if name is not None:
         rest["data_action"] = name
+    label = hint.replace("{{ undo_label }} ", "").replace("{{ redo_label }} ", "")
     with v3.VBtn(
         icon=True,
         size="small",
         density="comfortable",
         variant="text",
-        aria_label=hint.replace("{{ undo_label }} ", "").replace("{{ redo_label }} ", ""),
+        aria_label=label,
         **rest,
     ):
         v3.VIcon(icon, size=20)
-        v3.VTooltip(hint, activator="parent", location="bottom")
+        ui.tooltip(hint, label=label)
 
 
 def _view(app: Any) -> None:
@@ -363,7 +368,7 @@ def _view(app: Any) -> None:
                     color=(f"tool === '{name}' ? 'primary' : undefined",), data_tool_button=name,
                 ):  # fmt: skip
                     v3.VIcon(icon, size=20)
-                    v3.VTooltip(hint, activator="parent", location="right")
+                    ui.tooltip(hint, "right")
         html.Div("{{ frame }}", classes="pv-status", title=("drawing",))
         with html.Div(classes="pv-notes"):
             with html.Div(v_if="measured.length", classes="pv-measured"):

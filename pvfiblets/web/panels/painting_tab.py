@@ -280,7 +280,7 @@ def build(app: Any) -> None:
                     click=f"tool = tool === '{name}' ? 'rotate' : '{name}'", **ui.pressed(f"tool === '{name}'"),
                 ):  # fmt: skip
                     v3.VIcon(icon, size=18)
-                    v3.VTooltip(hint, activator="parent", location="bottom")
+                    ui.tooltip(hint)
         with html.Div(classes="pv-pair px-3 pt-1", v_if="!['outline', 'sphere'].includes(tool)"), v3.VBtnToggle(
             model_value=("brush_deep ? '3-D' : '2-D'",), update_modelValue="brush_deep = $event === '3-D'",
             mandatory=True, density="compact", style="height: 28px",
