@@ -94,6 +94,7 @@ class Explorer(TrameApp):
             elsewhere=lambda: self.browser.draws(),
             left_out=lambda: self.browser.drawn_view(),
             pane_at=self.scene.slicing.pane_at,
+            resized=self.scene.cameras.refit,
         )
         self.browser = BrowserDrawing(self)
         self._charts = describe.Charts(self.scene)

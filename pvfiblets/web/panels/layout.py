@@ -82,8 +82,8 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
   max-width: calc(100% - 68px); padding: 2px; border-radius: 8px; background: #000b }
 .pv-paint-tools .pv-dot { align-self: center; width: 14px; height: 14px; margin: 0 4px }
 @media (pointer: coarse) {
-  .pv-tools .v-btn, [data-paint-tool] { width: 42px !important; height: 42px !important }
-  .pv-paint-tools .v-btn { width: 34px !important; height: 40px !important }
+  .pv-tools .v-btn, [data-paint-tool], .pv-paint-tools .v-btn { width: 44px !important; height: 44px !important }
+  header .v-btn--icon { width: min(44px, 12vw) !important; height: 44px !important } /* eight of them */
   .pv-label-row .v-btn { min-height: 40px } .pv-num { font-size: 16px; padding: 6px }
 }
 .pv-over { position: absolute; inset: 0; z-index: 2; cursor: crosshair; touch-action: none }
