@@ -45,6 +45,7 @@ class Page:
     like_mm: str = "8"  # distances of the tab Bundles, as they were typed
     cluster_mm: str = "10"
     models_folder: str = ""
+    matrix_alone: bool = False  # in place of the frame
 
     toast_number: int = 0  # of the sentence: pages remember which they have shown
     layers: list[Record] = field(default_factory=list)
@@ -136,6 +137,7 @@ WRITABLE: dict[str, type] = {
     "like_mm": str,
     "cluster_mm": str,
     "models_folder": str,
+    "matrix_alone": bool,
 }
 """Fields that browsers may write, and their types."""
 

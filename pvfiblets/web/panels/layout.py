@@ -40,6 +40,8 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
   .pv-matrix { left: var(--v-layout-left); width: auto; top: auto; height: 55%;
     border-top: 1px solid rgba(128,128,128,.3) }
 }
+.pv-matrix.pv-alone { left: var(--v-layout-left); top: var(--v-layout-top); width: auto; height: auto }
+.pv-alone .pv-cells { max-width: min(100%, 100dvh - 230px) } /* its text stays in view */
 .pv-cells { position: relative; aspect-ratio: 1; max-width: 460px; cursor: crosshair; touch-action: pan-y }
 .pv-cells img { width: 100%; height: 100%; display: block; image-rendering: pixelated; user-select: none }
 @media (max-width: 759.9px) { .pv-cells { max-width: min(460px, 33vh) } } /* its text stays in view */
