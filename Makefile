@@ -90,6 +90,7 @@ gl:
 browser:
 	@scripts/browser.sh
 	@scripts/firefox.sh
+	@scripts/axe.sh
 
 display:
 	@scripts/display.sh

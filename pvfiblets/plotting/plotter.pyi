@@ -166,10 +166,11 @@ class _AddSlices(Protocol):
         kind: str | None = None, labels: Any = None, modulate: Any = None, vectors: str = "scanner",
         cmap: ColormapOptions | pv.LookupTable = "gray", clim: float | Sequence[float] | None = None,
         percentiles: tuple[float, float] = (1.0, 99.0), log_scale: bool = False, below: float | None = None,
-        above: float | None = None, opacity: float = 1.0, blend: str = "over", interpolation: str = "linear",
-        index: int = 0, outline: bool = False, visible: bool = True, name: str | None = None, pickable: bool = True,
-        show_scalar_bar: bool = False, scalar_bar_args: dict[str, Any] | None = None,
-        user_matrix: TransformLike | None = None, reset_camera: bool | None = None, render: bool = True,
+        above: float | None = None, outside: float | None = None, opacity: float = 1.0, blend: str = "over",
+        interpolation: str = "linear", index: int = 0, outline: bool = False, visible: bool = True,
+        name: str | None = None, pickable: bool = True, show_scalar_bar: bool = False,
+        scalar_bar_args: dict[str, Any] | None = None, user_matrix: TransformLike | None = None,
+        reset_camera: bool | None = None, render: bool = True,
     ) -> SliceStack: ...
 
 class _SlicesComponent(SlicesComponent):

@@ -38,7 +38,9 @@ def point_camera(plotter: Any, view: str) -> None:
     edges = np.array([c for c in product((0.0, 0.5, 1.0), repeat=3) if c.count(0.5) == 1])
     points = np.column_stack([low + edges * (high - low), np.ones(len(edges))])
     width, height = plotter.window_size
-    matrix = camera.GetCompositeProjectionTransformMatrix(width / height, -1.0, 1.0)
+    left, bottom, right, top = plotter.renderer.GetViewport()
+    aspect = width * (right - left) / (height * (top - bottom))
+    matrix = camera.GetCompositeProjectionTransformMatrix(aspect, -1.0, 1.0)
     seen = points @ np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)]).T
     with np.errstate(divide="ignore", invalid="ignore"):  # of a scene with nothing in it
         reach = np.abs(seen[:, :2] / seen[:, 3:]).max()

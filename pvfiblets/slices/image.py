@@ -20,6 +20,8 @@ Array = npt.NDArray[np.float64]
 
 KINDS = ("scalars", "rgb", "direction", "labels")  # meanings of the numbers of a voxel
 
+BAND = 32  # part of a side that the edges of an image are thick
+SIGNAL = 0.25  # part of the window that the outside of a head stays below
 SAMPLED = 1_000_000  # number of voxels for percentiles; of larger images every n-th
 
 
@@ -49,6 +51,7 @@ class SliceImage:
     is_colours: bool = False
     fixels: Fixels | None = None
     _percentiles: dict[tuple[float, float, int], tuple[float, float]] = field(default_factory=dict, repr=False)
+    _outside: dict[int | None, float | None] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         affine = np.asarray(self.affine, np.float64)
@@ -106,6 +109,13 @@ class SliceImage:
             self._percentiles[key] = window_of(self.values[..., index], low, high)
         return self._percentiles[key]
 
+    def outside(self, index: int | None = 0) -> float | None:
+        """Return the level of a volume's outside; None if there is none. Without index, of the greatest component."""
+        if index not in self._outside:
+            volume = self.values.max(axis=-1) if index is None else self.values[..., index]
+            self._outside[index] = outside_level(volume)
+        return self._outside[index]
+
     def voxel_at(self, position: npt.ArrayLike) -> tuple[int, int, int] | None:
         """Return the voxel that holds a position in mm; None outside of the image."""
         found = self.inverse[:3, :3] @ np.asarray(position, np.float64) + self.inverse[:3, 3]
@@ -140,6 +150,31 @@ def _of_fixels(fixels: Fixels, affine: Array, own: str, name: str | None) -> Sli
     """Return fixels as an image: how many a voxel has, or the greatest of the numbers that they were opened for."""
     values = fixels.of_grid(None if fixels.shown is None else fixels.numbers(fixels.shown))
     return SliceImage(values[..., None], np.asarray(affine, np.float64), name or own, fixels=fixels)
+
+
+def outside_level(values: Array) -> float | None:
+    """Return the level that noise around a head stays below, from the twelve edges of an image.
+
+    Tissue may touch faces of an image, as a neck does, but seldom its edges. None if nothing is dark there.
+    """
+    parts = []
+    for axis in range(3):
+        across, down = (one for one in range(3) if one != axis)
+        for first in (False, True):
+            for second in (False, True):
+                at: list[slice] = [slice(None)] * 3
+                for one, last in ((across, first), (down, second)):
+                    thick = max(1, values.shape[one] // BAND)
+                    at[one] = slice(-thick, None) if last else slice(thick)
+                parts.append(values[tuple(at)].ravel())
+    edges = np.concatenate(parts).astype(np.float64)
+    edges = edges[np.isfinite(edges)]
+    if not len(edges):
+        return None
+    middle, high = np.percentile(edges, (50.0, 99.0))
+    level = float(middle + 2.0 * (high - middle))  # of Rayleigh's noise, one voxel in 100,000 is above
+    low, top = window_of(values, 1.0, 99.0)
+    return level if level <= low + SIGNAL * (top - low) else None
 
 
 def window_of(values: Array, low: float, high: float) -> tuple[float, float]:

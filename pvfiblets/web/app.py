@@ -94,6 +94,7 @@ class Explorer(TrameApp):
             elsewhere=lambda: self.browser.draws(),
             left_out=lambda: self.browser.drawn_view(),
             pane_at=self.scene.slicing.pane_at,
+            resized=self.scene.cameras.refit,
         )
         self.browser = BrowserDrawing(self)
         self._charts = describe.Charts(self.scene)
@@ -121,6 +122,7 @@ class Explorer(TrameApp):
         self.scene.watch(lambda _: self.refresh())
         self.scene.watch(lambda _: self.files.keep_soon())
         self.state.change("tab")(lambda tab, **_: self._show_info() if tab == "info" else None)
+        self.state.change("tool")(lambda **_: self.selecting.end_measuring())
         self.refresh()
         self.server.controller.on_server_ready.add(lambda **_: self.files.open_given())
 
@@ -338,13 +340,15 @@ class Explorer(TrameApp):
 
     def undo(self) -> None:
         """Undo the last change."""
-        if self.history.undo() is not None:
+        if (what := self.history.undo()) is not None:
             self.refresh()
+            self.say(f"Undone: {what}")
 
     def redo(self) -> None:
         """Redo the last undone change."""
-        if self.history.redo() is not None:
+        if (what := self.history.redo()) is not None:
             self.refresh()
+            self.say(f"Redone: {what}")
 
     # Frames
 

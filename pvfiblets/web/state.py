@@ -45,6 +45,7 @@ class Page:
     like_mm: str = "8"  # distances of the tab Bundles, as they were typed
     cluster_mm: str = "10"
     models_folder: str = ""
+    matrix_alone: bool = False  # in place of the frame
 
     toast_number: int = 0  # of the sentence: pages remember which they have shown
     layers: list[Record] = field(default_factory=list)
@@ -61,6 +62,7 @@ class Page:
     background: str = "#000000"
     picture: Record = field(default_factory=dict)  # the size of one to be saved
     edges: Record = field(default_factory=dict)  # anatomical letters at the picture's edges
+    measuring: bool = False  # whether the first of two clicks was taken
     measured: list[str] = field(default_factory=list)  # distances, for people
     no_room: str = ""  # which colour bars are not shown
 
@@ -135,6 +137,7 @@ WRITABLE: dict[str, type] = {
     "like_mm": str,
     "cluster_mm": str,
     "models_folder": str,
+    "matrix_alone": bool,
 }
 """Fields that browsers may write, and their types."""
 

@@ -415,3 +415,76 @@ def test_an_oblique_slice_is_where_its_widget_is(plotter):
     np.testing.assert_allclose(plane.grid.positions()[..., 2], 5.0, atol=1e-9)
     with pytest.raises(ValueError, match="another plane has"):
         plotter.slices.add_oblique()
+
+
+def noisy_head(shape=(64, 72, 60)):
+    """Return a head with dark ventricles in Rayleigh's noise, its neck on the lowest face, and where its tissue is."""
+    rng = np.random.default_rng(0)
+    i, j, k = np.mgrid[: shape[0], : shape[1], : shape[2]]
+    inside = ((i - 32) / 24) ** 2 + ((j - 36) / 28) ** 2 + ((k - 34) / 22) ** 2 < 1.0
+    inside |= ((i - 32) ** 2 + (j - 36) ** 2 < 100) & (k < 20)
+    ventricles = (i - 32) ** 2 + (j - 36) ** 2 + (k - 34) ** 2 < 36
+    signal = np.where(inside, 800.0, 0.0) * ~ventricles
+    values = np.hypot(signal + rng.normal(0.0, 15.0, shape), rng.normal(0.0, 15.0, shape))
+    return values.astype(np.float32), inside
+
+
+@pytest.mark.parametrize("offset", [0.0, -1024.0], ids=["noise", "as of a CT"])
+def test_the_outside_of_a_head_is_clear_in_the_3d_view_alone(plotter, offset):
+    """Compared with the closed form of the head; its ventricles are as dark as the air and stay."""
+    values, inside = noisy_head()
+    slices = plotter.add_slices(values + offset, planes="axial", interpolation="nearest")
+    plotter.show(auto_close=False)
+    (layer,) = slices.layers
+    assert 45.0 < layer.outside - offset < 200.0  # 3 standard deviations of the noise, and a quarter of the signal
+    for k in (8, 34):  # through the neck, and the ventricles
+        slices.position = 32, 36, k
+        grid = slices["axial"].grid
+        at = np.rint(grid.positions()).astype(int)
+        wanted = inside[at[..., 0], at[..., 1], at[..., 2]]
+        assert (slices.pixels(grid)[..., 3] == 255).all()  # as panes show it
+        plotter.render()
+        np.testing.assert_array_equal(slices["axial"].actor.pixels[..., 3] > 0, wanted)
+    layer.outside = -np.inf
+    plotter.render()
+    assert (slices["axial"].actor.pixels[..., 3] == 255).all()
+    layer.outside = offset + 900.0  # above all tissue
+    plotter.render()
+    assert not slices["axial"].actor.pixels.any()
+    layer.outside = None
+    assert layer.outside - offset < 200.0
+
+
+def test_lines_are_seen_through_the_outside_of_a_head(plotter):
+    values, _ = noisy_head()
+    plotter.add_slices(values, planes="coronal")
+    line = pv.Line((2, 70, 56), (2, 70, 2))  # behind the plane, beside the head
+    plotter.add_mesh(line, color="red", line_width=3, lighting=False)
+    plotter.view_xz()
+    red = plotter.screenshot()[..., 0].astype(int) - plotter.screenshot()[..., 1]
+    assert (red > 200).sum() > 100
+
+
+def test_images_without_an_outside_are_shown_whole():
+    rng = np.random.default_rng(0)
+    assert SliceImage(rng.random((9, 9, 9, 1)), np.eye(4)).outside() is None
+    signed = rng.normal(size=(32, 32, 32, 1))  # a map of statistics: what is around it is no darkest
+    signed[[0, 1, -1, -2]] = signed[:, [0, 1, -1, -2]] = signed[:, :, [0, 1, -1, -2]] = 0.0
+    assert SliceImage(signed, np.eye(4)).outside() is None
+    assert SliceImage(np.full((4, 4, 4, 1), np.nan), np.eye(4)).outside() is None
+
+
+def test_colours_and_directions_have_an_outside_too(plotter):
+    ball = (np.stack(np.mgrid[-8:9, -8:9, -8:9], axis=-1) ** 2).sum(axis=-1) < 36
+    rgb = np.where(ball, 200, 0).astype(np.uint8)[..., None].repeat(3, axis=-1)
+    vectors = np.where(ball[..., None], (0.0, 0.6, 0.8), 0.0)
+    fa = np.where(ball, 0.7, 0.01)
+    for source, options in ((rgb, {}), (vectors, {"kind": "direction"}), (vectors, {"modulate": fa})):
+        slices = plotter.add_slices(source, planes="sagittal", interpolation="nearest", name="one", **options)
+        plotter.show(auto_close=False)
+        plotter.render()
+        grid = slices["sagittal"].grid
+        at = np.rint(grid.positions()).astype(int)
+        np.testing.assert_array_equal(
+            slices["sagittal"].actor.pixels[..., 3] > 0, ball[at[..., 0], at[..., 1], at[..., 2]]
+        )

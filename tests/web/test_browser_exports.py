@@ -175,6 +175,14 @@ def test_a_matrix_is_made_pointed_at_and_clicked(revisit, tmp_path):
     here.wait(lambda: here.page.locator("#pv-cell").inner_text() == "3 – 5: 16 streamlines", "what is told")
     here.page.mouse.click(*at)
     here.wait(lambda: here.state("matrix")["cell"] == "3 – 5", "its streamlines")
+    beside, view = here.page.locator("#pv-cells").bounding_box(), here.page.locator("#pv-view").bounding_box()
+    here.page.click("[data-action=matrix-alone]")
+    here.page.wait_for_selector("#pv-matrix.pv-alone")
+    alone, panel = (here.page.locator(one).bounding_box() for one in ("#pv-cells", "#pv-matrix"))
+    assert alone["width"] == alone["height"] > 1.2 * beside["width"]
+    assert panel["x"] <= view["x"]
+    here.page.click("[data-action=matrix-alone]")
+    here.page.wait_for_selector("#pv-matrix:not(.pv-alone)")
     assert here.state("filters")["counted"] == "16 of 60 streamlines"
     with here.page.expect_download() as download:
         here.page.click("[data-fetch='matrix.npy']")

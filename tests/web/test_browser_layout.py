@@ -197,6 +197,31 @@ def test_all_of_the_bar_is_within_reach_of_a_thumb(visit):
     assert "\n".join(faults(here, "#dialog-picture")) == ""
 
 
+def test_a_phone_shows_all_of_the_first_picture_and_buttons_as_wide_as_fingers(visit):
+    """Of the ball, which is as wide as high."""
+    import numpy as np
+
+    here = visit("--mesh", "ball.ply", width=390, height=844, has_touch=True, is_mobile=True)
+    here.wait(lambda: not here.state("left_open"), "the panels to close")
+    for size in ((390, 844), (844, 390)):  # turned, too
+        here.page.set_viewport_size({"width": size[0], "height": size[1]})
+        here.stands()
+        here.wait(lambda size=size: here.picture().shape[1] == size[0], "a picture of that size")
+        lit = here.rests().max(axis=2) > 60
+        for found, length in zip((lit.any(axis=0), lit.any(axis=1)), lit.shape[::-1], strict=True):
+            first, last = np.flatnonzero(found)[[0, -1]]
+            assert first > 0
+            assert last < length - 1
+        reach = max(np.ptp(np.flatnonzero(lit.any(axis=axis))) / lit.shape[1 - axis] for axis in (0, 1))
+        assert reach > 0.5  # and no smaller than it must be
+    here.page.set_viewport_size({"width": 390, "height": 844})
+    here.stands()
+    for button in here.page.locator("header .v-btn, .pv-tools .v-btn").all():
+        if button.is_visible():
+            box = button.bounding_box()
+            assert min(box["width"], box["height"]) >= 44.0, button.get_attribute("aria-label")
+
+
 def test_a_narrow_page_begins_with_the_picture_and_none_is_stretched_by_a_new_size(visit):
     """Of the ball, which is round: at each moment after a resize it is as wide as high on the page."""
     import numpy as np

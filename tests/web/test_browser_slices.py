@@ -6,6 +6,7 @@ import shutil
 import numpy as np
 import pytest
 
+from pvfiblets.web.panels.dialogs import KEYS
 from tests.web.browsing import LOAD
 
 pytestmark = pytest.mark.more
@@ -105,6 +106,72 @@ def test_a_t1_is_opened_gone_through_and_found_again(revisit):
     assert told(here) == [20.0, 24.0, 28.0]
 
 
+def test_every_key_of_the_list_works(revisit):
+    here = revisit("lines.fiblets")
+    sliced(here)
+    here.page.locator("#pv-view").hover(position={"x": 40, "y": 300})
+    here.page.click("[data-action=add-painted]")
+    here.press("Escape")
+    state, at = here.state, lambda: told(here)
+    tools = {"p": "pick", "b": "box", "l": "lasso", "m": "measure", "n": "brush", "e": "erase", "f": "fill",
+             "u": "outline", "j": "sphere", "w": "grow"}  # fmt: skip
+    for key, tool in tools.items():
+        here.press(key)
+        here.wait(lambda tool=tool: state("tool") == tool, f"the tool of {key}")
+        here.press("Escape")
+        here.wait(lambda: state("tool") == "rotate", "Escape")
+    for key, dialog in {"o": "open", "s": "session", "?": "help"}.items():
+        here.press(key)
+        here.page.wait_for_selector(f"#dialog-{dialog}")
+        here.press("Escape")
+        here.page.wait_for_selector(f"#dialog-{dialog}", state="hidden")
+    for key, name in {"t": "dark", "[": "left_open", "]": "right_open", "5": "parallel"}.items():
+        before = state(name)
+        for wanted in (not before, before):
+            here.press(key)
+            here.wait(lambda name=name, wanted=wanted: state(name) is wanted, f"{name} by {key}")
+    camera = lambda: json.loads(here.page.evaluate("window.trame.trigger('save_session')"))["camera"]  # noqa: E731
+    for key in "12340r":
+        before = camera()
+        if key == "r":
+            here.page.evaluate("window.trame.trigger('view', ['axial'])")
+        here.press(key)
+        here.wait(lambda before=before: camera() != before, f"another view by {key}")
+    for key, steps in {"ArrowLeft": "ArrowRight", "ArrowUp": "ArrowDown", "PageUp": "PageDown"}.items():
+        before = at()
+        here.press(key)
+        here.wait(lambda before=before: at() != before, f"a step by {key}")
+        here.press(steps)
+        here.wait(lambda before=before: at() == before, f"a step back by {steps}")
+    here.press("x")
+    here.wait(lambda: state("slicing")["layout"] == "3d", "the 3-D view alone")
+    here.press("x")
+    here.wait(lambda: state("slicing")["layout"] == "beside", "slices again")
+    here.press("]")
+    here.wait(lambda: state("right_open") is False, "no tab")
+    here.press("g")
+    here.wait(lambda: here.page.evaluate("document.activeElement.ariaLabel") == "mm x", "the field of the position")
+    here.page.keyboard.type("12")
+    here.press("Enter")
+    here.wait(lambda: at()[0] == 12.0, "the position that was typed")
+    visible = lambda: [layer["visible"] for layer in state("layers")]  # noqa: E731
+    before = visible()
+    here.press("v")
+    here.wait(lambda: visible() != before, "a hidden layer")
+    here.press("Control+z")
+    here.wait(lambda: visible() == before, "undo")
+    here.press("Control+y")
+    here.wait(lambda: visible() != before, "redo")
+    with here.page.expect_download():
+        here.press("c")
+    here.press("Delete")
+    here.wait(lambda: here.layers() == 1, "one layer fewer")
+    tested = {key.upper() for key in tools} | set("OSCTXGVR[]?123450") | {"Esc"}
+    tested |= {"arrows", "Page", "Up", "Down", "Ctrl+Z", "Ctrl+Y", "Del"}
+    tested |= {"comma,", "full", "stop"}  # test_volumes_of_a_series_are_gone_through
+    assert {word for keys, _ in KEYS for word in keys.split()} <= tested
+
+
 def test_a_painted_region_filters_and_is_kept(revisit, tmp_path):
     here = revisit("lines.fiblets")
     sliced(here)
@@ -123,8 +190,6 @@ def test_a_painted_region_filters_and_is_kept(revisit, tmp_path):
     here.page.fill("input[aria-label='Radius, mm']", "1")
     here.press("Tab")
     here.wait(lambda: here.state("brush") == 1, "the radius")
-    here.page.click("[data-painted] [data-select=use] .v-field")
-    here.page.click(".v-overlay--active .v-list-item:has-text('pass through')")
     before = here.rests()
     # At the cross-hair and a voxel towards the front, which is up.
     view = here.page.locator("#pv-view").bounding_box()
@@ -140,6 +205,7 @@ def test_a_painted_region_filters_and_is_kept(revisit, tmp_path):
     here.changed(before)
     here.press("Control+z")
     here.wait(lambda: here.state("painting")["counted"] == "60 of 60 streamlines are shown", "all")
+    here.told("Undone: paint left <b>arm</b>")
     here.press("Control+y")
     here.wait(lambda: here.state("painting")["counted"] == "2 of 60 streamlines are shown", "what passes")
     here.page.fill("#painting-name", "arms")
@@ -351,8 +417,6 @@ def test_from_a_t1_and_labels_to_an_exported_connection(revisit):
     here.wait(lambda: here.state("atlas")["asked"] == [3], "the label")
     here.page.click("[data-action=add-painted]")
     here.page.wait_for_selector("#pv-paint[data-tool=brush]")
-    here.page.click("[data-painted] [data-select=use] .v-field")
-    here.page.click(".v-overlay--active .v-list-item:has-text('pass through')")
     here.page.click("[data-paint-tool=fill]")
     click(here, "sagittal", 0.5, 0.5)  # all of the slice at x = 20 mm, from 18 on, where one line ends
     here.wait(lambda: here.state("painting")["regions"][0]["voxels"] == "256", "the slice")

@@ -84,6 +84,39 @@ def test_a_distance_is_measured_in_millimetres(revisit):
     here.wait(lambda: not here.state("measured"), "no distance")
 
 
+def test_two_clicks_measure_and_escape_ends(revisit):
+    here = revisit("lines.fiblets")
+    from_above(here)
+    lit = here.rests().max(axis=2) > 60
+    height, width = lit.shape
+    rows, columns = np.nonzero(lit)
+    first, last = columns.argmin(), columns.argmax()
+    ends = [(columns[at] / width, rows[at] / height) for at in (first, last)]
+    line = here.page.locator("#pv-over polyline")
+    note = here.page.locator("[data-value=measuring]")
+    here.press("m")
+    here.wait(lambda: note.count() and "Click two points, or drag" in note.inner_text(), "what to do")
+    here.trace(ends[:1])
+    here.wait(lambda: "second point" in note.inner_text(), "what to do next")
+    here.wait(lambda: line.count() == 1, "the first point")
+    box = here.page.locator("#pv-view").bounding_box()
+    here.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    before = line.get_attribute("points").split()
+    assert before[0] != before[1]  # it follows the pointer
+    here.trace(ends[1:])
+    here.wait(lambda: len(here.state("measured")) == 1, "the distance")
+    assert float(here.state("measured")[0].split()[0]) > 60.0  # mm: lines are up to 69 mm long
+    here.trace(ends[:1])
+    here.wait(lambda: line.count() == 1, "the first point of another")
+    here.press("Escape")
+    here.wait(lambda: here.state("tool") == "rotate", "the end")
+    here.press("m")
+    here.trace(ends[1:])
+    here.wait(lambda: "second point" in note.inner_text(), "a first point again")
+    assert len(here.state("measured")) == 1
+    here.press("Escape")
+
+
 def test_keys_are_listed_and_do_what_the_list_says(revisit):
     here = revisit("lines.fiblets")
     before = here.rests()

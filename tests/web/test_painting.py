@@ -26,7 +26,6 @@ def shown(scene):  # noqa: F811
 
 def test_a_brush_filters_streamlines_at_once_and_one_gesture_is_one_step(painted):
     history = History(painted, together=0.0)
-    painted.painting.set_painted("region 1", use="passes")
     assert len(shown(painted)) == 60  # of no voxel nothing is asked
     # Lines lie at y = 0, 4, ... 36 and z = 0, 4, ... 20, from x = 0 on: voxels of the image's grid.
     history.held = True

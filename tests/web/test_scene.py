@@ -337,11 +337,11 @@ def test_only_pictures_render_and_views_show_what_is_visible(scene):
 def test_distances_are_between_what_pixels_show(ball):
     scene = ball
     np.testing.assert_allclose(scene.cameras.place_at(100, 80), [20.125, 18.125, 18.0], atol=0.1)
-    found = scene.measurements.measure(100 - 16, 80, 100 + 16, 80)
-    assert found["mm"] == pytest.approx(8.0, abs=0.1)
-    assert found["from"][2] == pytest.approx(10 + np.sqrt(64 - 16), abs=0.15)  # of facets
+    begin, end = (scene.measurements.place_at(100 + across, 80) for across in (-16, 16))
+    assert np.linalg.norm(np.subtract(begin, end)) == pytest.approx(8.0, abs=0.1)
+    assert begin[2] == pytest.approx(10 + np.sqrt(64 - 16), abs=0.15)  # of facets
     assert scene.cameras.place_at(0, 0) is None
-    assert scene.measurements.measure(0, 0, 100, 80) is None
+    assert scene.measurements.place_at(0, 0) is None
     with pytest.raises(ValueError, match="x is"):
         scene.cameras.place_at(1000, 0)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.web.panels.selection_tab import SelectionActions
-from tests.web.desk import Desk
+from tests.web.desk import Desk, scene_of_views
 
 
 @pytest.fixture
@@ -59,11 +59,58 @@ def test_distances_stay_in_the_picture_until_they_are_removed_or_undone(desk, sc
     assert millimetres(desk) == []
     np.testing.assert_array_equal(scene.cameras.screenshot(), before)
     desk.selecting.point("measure", [share(84, 80), share(5, 5)], False)
-    assert desk.said == [("info", "Begin and end on something that is drawn.")]
+    assert desk.said == [("info", "There is nothing to measure at this point; choose a line, surface or slice.")]
     assert not amber(scene.cameras.screenshot()).any()
     desk.selecting.point("measure", [share(84, 80), share(116, 80)], False)
     scene.close()
     assert list(scene.plotter.actors) == []
+
+
+def test_two_clicks_measure_and_nothing_of_no_length_is_kept(desk, scene):
+    from pvfiblets.web.session import files as session
+
+    def click(x, y):
+        desk.selecting.point("measure", [share(x, y), share(x + 1, y)], False)
+
+    click(83, 80)
+    assert desk.page.measuring
+    assert millimetres(desk) == []
+    click(115, 80)
+    assert millimetres(desk) == [pytest.approx(8.0, abs=0.01)]
+    assert not desk.page.measuring
+    click(84, 80)
+    desk.selecting.end_measuring()  # as Esc does
+    click(90, 80)
+    assert len(millimetres(desk)) == 1
+    with pytest.raises(ValueError, match="same point"):
+        click(90, 80)
+    click(5, 5)  # on nothing
+    assert desk.said[-1][0] == "info"
+    assert not desk.page.measuring
+    assert len(millimetres(desk)) == 1
+    assert desk.history.undo_label == f"measure {desk.page.measured[0]}"
+    saved = session.to_dict(scene)
+    saved["measurements"].append([[1.0, 2.0, 3.0]] * 2)  # as older versions wrote
+    session.from_dict(scene, saved)
+    assert len(millimetres(desk)) == 1
+
+
+def test_distances_in_panes_are_of_their_slices(folder):
+    """Compared with where the pane shows two voxels."""
+    with scene_of_views(folder) as scene:
+        desk = Desk(scene, folder)
+        desk.selecting = SelectionActions(desk)
+        scene.open("head.nii.gz", "image")
+        scene.images.set_slices(layout="axial")
+        scene.cameras.screenshot()
+        workspace = scene.slicing.workspace
+        pane, z = workspace.panes["axial"], workspace.position[2]
+        ends = [pane.pixel_of((x, 20.0, z)) for x in (12.0, 40.0)]
+        width, height = scene.plotter.window_size
+        desk.selecting.point("measure", [[x / (width - 1), 1 - y / (height - 1)] for x, y in ends], False)
+        (found,) = scene.state.measurements
+        assert found.mm == pytest.approx(28.0, abs=0.1)
+        np.testing.assert_allclose([found.begin, found.end], [(12, 20, z), (40, 20, z)], atol=0.1)
 
 
 def test_a_region_is_placed_on_what_lies_behind_a_measured_line(desk, scene):

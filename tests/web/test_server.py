@@ -75,6 +75,7 @@ async def test_the_token_opens_a_session_and_leaves_the_address(tmp_path):
         await browser.enter()
         async with browser.http.get(browser.base + "/index.html") as answer:
             assert "frame-ancestors" in answer.headers["Content-Security-Policy"]
+            assert answer.headers["Server"] == "pvfiblets"  # no versions
             assert answer.headers["X-Content-Type-Options"] == "nosniff"
             assert (await answer.json())["cookie"] is None  # the process behind has no use for it
         async with browser.socket() as socket:

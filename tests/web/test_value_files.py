@@ -159,6 +159,20 @@ def test_samples_are_trilinear_inside_and_nothing_outside():
     assert np.isfinite(VolumeSource(values, affine).at((affine @ [3, 0, 3, 1])[:3][None])).all()
 
 
+@pytest.mark.parametrize("kind", ["image", "volume"])
+def test_open_images_colour_and_stand_after_the_usual_four(folder, kind):
+    """An image that is open as slices colours as one that is open as a volume."""
+    with scene_of_views(folder) as scene:
+        layer = scene.open("lines.fiblets")
+        scene.open("head.nii.gz", kind)
+        (scalars,) = (item for item in scene.queries.properties(layer.id) if item["name"] == "scalars")
+        titles = [choice["title"] for choice in scalars["choices"]]
+        assert titles[:5] == ["orientation", "one colour", "a colour each", "group", "volume head.nii.gz"]
+        assert len(set(titles)) == len(titles)
+        scene.set(layer.id, "scalars", HEAD)
+        assert isinstance(scene.actor(layer.id).scalars, VolumeSource)
+
+
 def test_volumes_of_the_scene_are_choices_and_stay_when_their_layer_goes(scene, lines):
     layer = scene.open("lines.fiblets")
 

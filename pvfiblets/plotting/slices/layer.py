@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
-from pvfiblets.plotting.slices.resampling import Resampler
+from pvfiblets.plotting.slices.resampling import Resampler, reaching_border
 from pvfiblets.plotting.slices.settings import SliceSettings
 from pvfiblets.slices import colours
 from pvfiblets.slices.image import KINDS, SliceImage, as_slice_image
@@ -105,7 +105,7 @@ class SliceLayer(SliceSettings):
         self._state[name] = self._checked(name, value)
         if name == "cmap":
             self._table = None
-        if self._weights is not None and name in ("clim", "percentiles", "below", "above"):
+        if self._weights is not None and name in ("clim", "percentiles", "below", "above", "outside"):
             setattr(self._weights, name, value)
         if self._changed is not None:
             self._changed()
@@ -125,6 +125,16 @@ class SliceLayer(SliceSettings):
             return (0.0, 1.0) if given is None else given
         low, high = self._state["percentiles"]
         return self.image.percentiles(low, high, self._state["index"])
+
+    @property
+    def outside_level(self) -> float | None:
+        """Values up to it are transparent in the 3-D view where they reach the border of a slice; None for none."""
+        if self._weights is not None:
+            return self._weights.outside_level
+        given: float | None = self._state["outside"]
+        if given is not None or self.kind == "labels":
+            return given
+        return self.image.outside(self._state["index"] % self.n_volumes if self.kind == "scalars" else None)
 
     # Values and colours -------------------------------------------------------------------------
 
@@ -160,26 +170,34 @@ class SliceLayer(SliceSettings):
             return None
         return float(found[0]) if len(found) == 1 else found
 
-    def colours_on(self, grid: PlaneGrid) -> tuple[colours.Floats, colours.Mask]:
-        """Return colours ``(height, width, 4)`` at the pixels of a plane, and which of them are shown."""
+    def colours_on(self, grid: PlaneGrid, *, in_3d: bool = False) -> tuple[colours.Floats, colours.Mask]:
+        """Return colours ``(height, width, 4)`` at the pixels of a plane, and which of them are visible."""
         values, below, above = self.values_on(grid), self._state["below"], self._state["above"]
         if self.kind == "labels":
             return self._label_colours(values, colours.shown(values, below, above))
         if self.kind == "scalars":
             table = self.table()
-            return colours.mapped(values, table, self.window, self._state["log_scale"]), colours.shown(
-                values, below, above
-            )
+            mapped = colours.mapped(values, table, self.window, self._state["log_scale"])
+            return mapped, colours.shown(values, below, above) & self._within(values, in_3d)
         inside: colours.Mask = np.asarray(np.isfinite(values).all(axis=-1))
         if self.kind == "direction":
             weights = None if self._weights is None else self._weights.values_on(grid)
             if weights is not None:
                 inside &= colours.shown(weights, below, above)
+            inside &= self._within(values.max(axis=-1) if weights is None else weights, in_3d)
             return colours.direction_colours(values, weights, self.window), inside
         scale = 255.0 if self.image.values.dtype == np.uint8 else 1.0
         out = np.ones((*values.shape[:2], 4), np.float32)
         out[..., : values.shape[2]] = np.clip(np.nan_to_num(values) / scale, 0.0, 1.0)
-        return out, inside & colours.shown(values[..., :3].max(axis=-1), below, above)
+        brightest = values[..., :3].max(axis=-1)
+        return out, inside & colours.shown(brightest, below, above) & self._within(brightest, in_3d)
+
+    def _within(self, values: npt.NDArray[np.float64], in_3d: bool) -> colours.Mask:
+        """Return the pixels that the outside of the image does not hide."""
+        level = self.outside_level if in_3d else None
+        if level is None:
+            return np.ones(values.shape, bool)
+        return ~reaching_border(~(values > level))
 
     def table(self) -> npt.NDArray[np.uint8]:
         """Return the colours of the window, ``(n, 4)`` uint8."""

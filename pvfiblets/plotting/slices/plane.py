@@ -30,7 +30,12 @@ MOST_ACROSS = 768  # pixels along a side of a slice in the 3-D view, whatever it
 
 _PREPARE = "UserEvent"
 
-_DISCARD = "//VTK::TCoord::Impl\n  if (gl_FragData[0].a <= 0.002) { discard; }\n"
+_CLEAR = "//VTK::TCoord::Impl\n  if (gl_FragData[0].a <= 0.002) { discard; }\n"
+# Between clear and opaque pixels the edge is where half of the colour is: blended there, what is behind would shine.
+_CUT = """//VTK::TCoord::Impl
+  if (gl_FragData[0].a < 0.5) { discard; }
+  gl_FragData[0] = vec4(gl_FragData[0].rgb / gl_FragData[0].a, 1.0);
+"""
 
 
 class SliceActor(pv.Actor):
@@ -53,7 +58,7 @@ class SliceActor(pv.Actor):
         self.shows = 0  # number of images set so far
         self.prop.lighting = False
         self.prop.color = "white"
-        self.GetShaderProperty().AddFragmentShaderReplacement("//VTK::TCoord::Impl", True, _DISCARD, False)
+        self._code = ""
 
     def place(self, grid: PlaneGrid) -> None:
         """Lie where a plane's pixels are."""
@@ -78,6 +83,10 @@ class SliceActor(pv.Actor):
         clear = bool(((alpha > 0) & (alpha < 255)).any())
         self.SetForceOpaque(not clear)
         self.SetForceTranslucent(clear)
+        code = _CLEAR if clear else _CUT
+        if code != self._code:
+            self._code = code
+            self.GetShaderProperty().AddFragmentShaderReplacement("//VTK::TCoord::Impl", True, code, False)
 
     @property
     def pixels(self) -> npt.NDArray[np.uint8] | None:
@@ -176,7 +185,7 @@ class SlicePlane:
     def refresh(self) -> None:
         """Make the colours if they are out of date and the plane is shown."""
         if self._stale and self._grid is not None and self._visible:
-            self.actor.show(self._stack.pixels(self._grid), self._stack.smooth)
+            self.actor.show(self._stack.pixels(self._grid, in_3d=True), self._stack.smooth)
             self._stale = False
 
     def enter(self, renderer: Any) -> None:

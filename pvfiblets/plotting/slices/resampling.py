@@ -11,15 +11,36 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkImagingCore import vtkImageReslice
+from vtkmodules.vtkImagingMorphological import vtkImageThresholdConnectivity
 
 from pvfiblets.slices.frames import PlaneGrid
 
 INTERPOLATIONS = ("nearest", "linear", "cubic")
 
 _MODES = {"nearest": 0, "linear": 1, "cubic": 3}  # VTK_RESLICE_NEAREST, VTK_RESLICE_LINEAR, VTK_RESLICE_CUBIC
+
+
+def reaching_border(mask: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Return the pixels of a mask that are connected, side by side, with the border of the plane."""
+    around = np.pad(mask, 1, constant_values=True).view(np.uint8)
+    image = vtkImageData()
+    image.SetDimensions(around.shape[1], around.shape[0], 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(around.reshape(-1)))
+    seeds = vtkPoints()
+    seeds.InsertNextPoint(0.0, 0.0, 0.0)
+    fill = vtkImageThresholdConnectivity()
+    fill.SetInputData(image)
+    fill.SetSeedPoints(seeds)
+    fill.ThresholdByUpper(1.0)
+    fill.SetInValue(1.0)
+    fill.SetOutValue(0.0)
+    fill.Update()
+    found = vtk_to_numpy(fill.GetOutput().GetPointData().GetScalars()).reshape(around.shape)
+    return np.asarray(found[1:-1, 1:-1] > 0)
 
 
 class Resampler:

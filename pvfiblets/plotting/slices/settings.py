@@ -133,6 +133,19 @@ class SliceSettings(Settings):
         row=Row("Hide above", "Values above are hidden; empty: none.", type="number", optional=True,
                 matters=_of("scalars", "direction", "rgb")),
     )  # fmt: skip
+    outside: Setting[float | None] = Setting(
+        None,
+        "Values up to this one are transparent in the 3-D view where they reach the border of a slice, as around a "
+        "head; ``None`` finds it from the edges of the image, ``-inf`` shows all. Panes show all.",
+        kind="float | None",
+        header="float, optional",
+        where=LAYER,
+        check=_threshold,
+        read=lambda layer: layer.outside_level,
+        row=Row("Clear outside", "Values up to this are transparent around the head in 3-D; empty: found from the "
+                "image's edges.", group="Drawing", type="number", optional=True,
+                read=lambda layer: layer.outside_level, matters=_of("scalars", "direction", "rgb")),
+    )
     opacity: Setting[float] = Setting(
         1.0, "From 0, invisible, to 1.", kind="float", where=LAYER, low=0.0, high=1.0, row=Row("Opacity")
     )

@@ -391,8 +391,14 @@ class SliceStack:
 
     # Pictures and values ------------------------------------------------------------------------
 
-    def pixels(self, grid: PlaneGrid) -> npt.NDArray[np.uint8]:
+    def pixels(self, grid: PlaneGrid, *, in_3d: bool = False) -> npt.NDArray[np.uint8]:
         """Return the colours of all layers at the pixels of a plane.
+
+        Parameters
+        ----------
+        grid : PlaneGrid
+        in_3d : bool, default: False
+            Whether the outside of images is clear, as in the 3-D view.
 
         Returns
         -------
@@ -402,7 +408,7 @@ class SliceStack:
         found = None
         for layer in self._layers:
             if layer.visible and layer.opacity > 0.0:
-                picture, visible = layer.colours_on(grid)
+                picture, visible = layer.colours_on(grid, in_3d=in_3d)
                 found = colours.blend(found, picture, visible, layer.opacity, layer.blend)
         if found is None:
             return np.zeros((grid.shape[1], grid.shape[0], 4), np.uint8)

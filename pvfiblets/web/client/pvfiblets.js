@@ -22,6 +22,16 @@
       window.addEventListener("pagehide", () => sessionStorage.setItem("pvfiblets-said", String(get("toast_number"))));
     } catch { /* a browser that keeps nothing */ }
     recall();
+    describe();
+  };
+
+  // trame gives the image of the scene no text.
+  const describe = () => {
+    const area = document.querySelector("#pv-view");
+    if (!area) return setTimeout(describe, 50);
+    const name = () => area.querySelectorAll("img:not([alt])").forEach((image) => { image.alt = "Rendered scene"; });
+    new MutationObserver(name).observe(area, { childList: true, subtree: true });
+    name();
   };
 
   // Light or dark is kept by the browser; a view that others see, too, is left as it is.
@@ -83,6 +93,7 @@
 
   // Places are shares of the picture's width and height from its upper left: browsers that share a view may differ.
   let drawn = null;
+  let begun = null; // where the first of two clicks of a measurement was, as long as the picture stays
 
   const place = (over, event) => {
     const box = over.getBoundingClientRect();
@@ -101,8 +112,8 @@
       shape = `<rect x="${x}" y="${y}" width="${w}" height="${h}" ${style}/>`;
     } else if (tool === "lasso") {
       shape = `<polygon points="${shown.join(" ")}" ${style}/>`;
-    } else if (tool === "measure" && points.length > 1) {
-      shape = `<polyline points="${shown[0]} ${shown[shown.length - 1]}" ${style}/>`;
+    } else if (tool === "measure") { // a line of no length is a dot
+      shape = `<polyline points="${shown[0]} ${shown[shown.length - 1]}" stroke-linecap="round" ${style.replace('"2"', '"4"')}/>`;
     }
     over.innerHTML = `<svg viewBox="0 0 1000 1000" preserveAspectRatio="none">${shape}</svg>`;
   };
@@ -117,6 +128,8 @@
   }, true);
 
   document.addEventListener("pointermove", (event) => {
+    const over = event.target.closest?.("#pv-over[data-tool=measure]");
+    if (!drawn && over && begun) draw(over, "measure", [begun, place(over, event)]);
     if (!drawn || event.pointerId !== drawn.id) return;
     const point = place(drawn.over, event), last = drawn.points[drawn.points.length - 1];
     if (Math.hypot(point[0] - last[0], point[1] - last[1]) < 0.004) return;
@@ -125,13 +138,22 @@
     draw(drawn.over, drawn.tool, drawn.points);
   }, true);
 
-  const finish = (event, keep) => {
+  const finish = async (event, keep) => {
     if (!drawn || event.pointerId !== drawn.id) return;
     const { over, tool, points } = drawn;
-    drawn = null;
+    drawn = begun = null;
     over.innerHTML = "";
-    if (keep) call("point", tool, points, event.shiftKey);
+    if (!keep) return;
+    const goesOn = await call("point", tool, points, event.shiftKey);
+    if (!goesOn || drawn) return;
+    begun = points[points.length - 1];
+    draw(over, tool, [begun]);
   };
+  window.addEventListener("keydown", () => { // it may change the picture
+    const over = begun && document.querySelector("#pv-over");
+    if (over) over.innerHTML = "";
+    begun = null;
+  }, true);
   document.addEventListener("pointerup", (event) => finish(event, true), true);
   document.addEventListener("pointercancel", (event) => finish(event, false), true);
 

@@ -52,11 +52,21 @@
     }
   };
 
+  // The field appears with its tab, some frames later.
+  const typePosition = (frames) => requestAnimationFrame(() => {
+    const field = document.querySelector("[data-place=position] input");
+    if (field) field.select();
+    else if (frames) typePosition(frames - 1);
+  });
+
   window.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || get("dialog") || taken(event.target)) return;
     const slicing = get("slicing");
     if (event.key.toLowerCase() === "x") {
       call("set_layout", slicing?.layout === "beside" ? "3d" : "beside");
+    } else if (event.key.toLowerCase() === "g" && slicing?.shown) {
+      window.trame.state.update({ right_open: true, tab: "slices" });
+      typePosition(20);
     } else if (STEPS[event.key] && slicing?.shown) step(STEPS[event.key]);
     else if (/^[,.]$/.test(event.key) && slicing?.series?.length) call("step_volume", event.key === "." ? 1 : -1);
     else return;

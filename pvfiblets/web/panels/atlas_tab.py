@@ -230,7 +230,7 @@ def build(app: Any) -> None:
                 click="tool = tool === 'ask' ? 'rotate' : 'ask'", **ui.pressed("tool === 'ask'", "text"),
             ):  # fmt: skip
                 v3.VIcon("mdi-cursor-default-click-outline", size=16)
-                v3.VTooltip("Click labels in a slice", activator="parent", location="bottom")
+                ui.tooltip("Click labels in a slice")
         with html.Div(classes="pv-pair px-3 pt-1", v_if="atlas.asked.length", data_value="atlas-asked"):
             html.Span(
                 "{{ atlas.rows.filter((r) => atlas.asked.includes(r.label)).map((r) => r.name).join(' – ') }}: "

@@ -259,7 +259,8 @@ def build(app: Any) -> None:
 
 
 def _table(record: str, kind: str) -> None:
-    with html.Div(style="max-height: 30vh; overflow: auto", classes="px-2 pt-1"), html.Table(classes="pv-table"):
+    rows = html.Div(style="max-height: 30vh; overflow: auto", classes="px-2 pt-1", tabindex="0")
+    with rows, html.Table(classes="pv-table"):
         with html.Thead(), html.Tr():
             html.Th("{{ c }}", v_for=f"(c, k) in {record}.columns", key="k", scope="col")
         with html.Tbody(), html.Tr(v_for=f"(row, at) in {record}.rows", key="at"):

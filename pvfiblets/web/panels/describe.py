@@ -50,6 +50,8 @@ def control(item: Mapping[str, Any]) -> dict[str, Any]:
         shown["index"] = values.index(value) if value in values else None
     elif kind == "number":
         shown["shown"] = "" if value is None else short(value)
+        found = "auto" if effective is None else f"auto: {short(effective)}"
+        shown["automatic"] = found if item["optional"] else ""
         if effective is None and shown["limits"] is not None:
             shown["effective"] = shown["limits"][0]
     elif kind == "range":

@@ -15,9 +15,10 @@ KEYS = (
     ("5", "parallel or perspective"),
     ("Esc", "turn, move and zoom with the pointer"),
     ("P B L", "pick, box, lasso; with Shift add to the selection"),
-    ("M", "measure between two points"),
+    ("M", "measure: two clicks, or a drag"),
     ("X", "slices, or the 3-D view alone"),
     ("arrows  Page Up Down", "in a pane: move the cross-hair, go through slices"),
+    ("G", "on slices: type the position"),
     ("N E F U J W", "on slices: brush, erase, fill, outline, ball, grow"),
     ("comma, full stop", "previous, next volume of an image"),
     ("V", "show or hide the chosen layer"),
@@ -75,6 +76,7 @@ def _dialog(name: str, title: str, width: int) -> Any:
         update_modelValue=f"dialog = !$event && dialog === '{name}' ? '' : dialog",
         max_width=width,
         scrollable=True,
+        aria_label=title,
     )
     with dialog:
         card = v3.VCard(id=f"dialog-{name}")

@@ -66,6 +66,11 @@ def icon_button(icon: str, label: str | tuple[str], size: int = 18, **attributes
         v3.VIcon(icon, size=size)
 
 
+def tooltip(text: str, location: str = "bottom", label: str | tuple[str] | None = None) -> None:
+    """Build the tooltip of the element around it; the label names it for screen readers while it is closed."""
+    v3.VTooltip(text, activator="parent", location=location, aria_label=text if label is None else label)
+
+
 def pressed(condition: str, otherwise: str = "tonal") -> dict[str, Any]:
     """Return the attributes of a button that shows whether a condition holds."""
     return {"variant": (f"{condition} ? 'flat' : '{otherwise}'",), "color": (f"{condition} ? 'primary' : undefined",)}

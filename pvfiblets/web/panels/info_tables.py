@@ -103,12 +103,12 @@ def _affine(affine: Any) -> Table:
     matrix = None if affine is None else np.asarray(affine, np.float64)
     if matrix is not None and matrix.size == _FOUR * _FOUR:
         rows = [[short(float(value)) for value in row] for row in matrix.reshape(_FOUR, _FOUR)]
-    return _table("Voxels to mm", ("i", "j", "k", ""), rows)
+    return _table("Voxels to mm", ("i", "j", "k", "origin"), rows)
 
 
 def _passes(passes: Any) -> Table:
     rows = [[str(one.get("name", "")).replace("_", " "), short(one.get("ms") or 0.0)] for one in passes or ()]
-    return _table("Passes of the last redraw", ("", "ms"), rows, folded=True)
+    return _table("Passes of the last redraw", ("Pass", "ms"), rows, folded=True)
 
 
 def _buffers(buffers: Any) -> Table:

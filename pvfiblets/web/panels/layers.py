@@ -118,6 +118,7 @@ def _controls(app: Any) -> None:
         v_else_if="p.type === 'choice'",
         items=("p.items",),
         model_value=("p.index",),
+        aria_label=("p.label",),
         update_modelValue=(app.set_choice, "[chosen, p.name, $event]"),
     )
     ui.switch(
@@ -142,7 +143,7 @@ def _controls(app: Any) -> None:
         )
         ui.number_field(
             value=(f"{held} ? held.shown[0] : p.shown",),
-            placeholder=("p.optional ? 'auto' : ''",),
+            placeholder=("p.automatic",),
             change=(app.set_number, "[chosen, p.name, $event.target.value]"),
             style=("p.wide || !p.limits ? 'flex: 1; width: auto; min-width: 0' : 'width: 62px'",),
             aria_label=("p.label",),

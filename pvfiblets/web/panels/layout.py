@@ -8,6 +8,7 @@ from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import client, rca
 
 from pvfiblets.web.panels import atlas_tab, dialogs, matrix_panel, painting_tab, slices_tab, tabs
+from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels import layers as panels
 from pvfiblets.web.panels.elements import html, v3
 from pvfiblets.web.panels.painting_tab import PAINTING
@@ -39,6 +40,8 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
   .pv-matrix { left: var(--v-layout-left); width: auto; top: auto; height: 55%;
     border-top: 1px solid rgba(128,128,128,.3) }
 }
+.pv-matrix.pv-alone { left: var(--v-layout-left); top: var(--v-layout-top); width: auto; height: auto }
+.pv-alone .pv-cells { max-width: min(100%, 100dvh - 230px) } /* its text stays in view */
 .pv-cells { position: relative; aspect-ratio: 1; max-width: 460px; cursor: crosshair; touch-action: pan-y }
 .pv-cells img { width: 100%; height: 100%; display: block; image-rendering: pixelated; user-select: none }
 @media (max-width: 759.9px) { .pv-cells { max-width: min(460px, 33vh) } } /* its text stays in view */
@@ -81,8 +84,8 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
   max-width: calc(100% - 68px); padding: 2px; border-radius: 8px; background: #000b }
 .pv-paint-tools .pv-dot { align-self: center; width: 14px; height: 14px; margin: 0 4px }
 @media (pointer: coarse) {
-  .pv-tools .v-btn, [data-paint-tool] { width: 42px !important; height: 42px !important }
-  .pv-paint-tools .v-btn { width: 34px !important; height: 40px !important }
+  .pv-tools .v-btn, [data-paint-tool], .pv-paint-tools .v-btn { width: 44px !important; height: 44px !important }
+  header .v-btn--icon { width: min(44px, 12vw) !important; height: 44px !important } /* eight of them */
   .pv-label-row .v-btn { min-height: 40px } .pv-num { font-size: 16px; padding: 6px }
 }
 .pv-over { position: absolute; inset: 0; z-index: 2; cursor: crosshair; touch-action: none }
@@ -190,15 +193,18 @@ def build(app: Any) -> Any:
     with VAppLayout(app.server, theme=("dark ? 'dark' : 'light'",)) as layout:
         client.Style(STYLE)
         with v3.VLayout(style="height: 100vh; height: 100dvh"):
+            html.H1("pvfiblets", classes="d-sr-only")
             _bar(app)
             with v3.VNavigationDrawer(
-                v_model=("left_open", True), width=312, location="left", mobile_breakpoint=("900",), id="left"
+                v_model=("left_open", True), width=312, location="left", mobile_breakpoint=("900",), id="left",
+                aria_label="Layers and properties",
             ):
                 with html.Div(style="display: flex; flex-direction: column; height: 100%"):
                     panels.layers(app)
                     panels.properties(app)
             with v3.VNavigationDrawer(
-                v_model=("right_open", True), width=328, location="right", mobile_breakpoint=("1100",), id="right"
+                v_model=("right_open", True), width=328, location="right", mobile_breakpoint=("1100",), id="right",
+                aria_label="Tools",
             ):
                 tabs.build(app)
             with v3.VMain(style="position: relative; height: 100%"):
@@ -236,7 +242,7 @@ def _wide(app: Any) -> None:
             title, size="small", variant="text", classes="px-2 text-none", data_view=name,
             click=(app.camera.view, f"['{name}']"),
         ):  # fmt: skip
-            v3.VTooltip(f"Look {hint}", activator="parent", location="bottom")
+            ui.tooltip(f"Look {hint}")
     _icon("mdi-swap-horizontal", "The other side (0)", click=app.camera.flip, name="flip")
     _icon("mdi-fit-to-screen-outline", "Show everything (R)", click=app.camera.reset, name="reset")
     _icon(
@@ -290,16 +296,17 @@ def _folded(app: Any) -> None:
 def _icon(icon: str, hint: str, *, name: str | None = None, **rest: Any) -> None:
     if name is not None:
         rest["data_action"] = name
+    label = hint.replace("{{ undo_label }} ", "").replace("{{ redo_label }} ", "")
     with v3.VBtn(
         icon=True,
         size="small",
         density="comfortable",
         variant="text",
-        aria_label=hint.replace("{{ undo_label }} ", "").replace("{{ redo_label }} ", ""),
+        aria_label=label,
         **rest,
     ):
         v3.VIcon(icon, size=20)
-        v3.VTooltip(hint, activator="parent", location="bottom")
+        ui.tooltip(hint, label=label)
 
 
 def _view(app: Any) -> None:
@@ -363,7 +370,7 @@ def _view(app: Any) -> None:
                     color=(f"tool === '{name}' ? 'primary' : undefined",), data_tool_button=name,
                 ):  # fmt: skip
                     v3.VIcon(icon, size=20)
-                    v3.VTooltip(hint, activator="parent", location="right")
+                    ui.tooltip(hint, "right")
         html.Div("{{ frame }}", classes="pv-status", title=("drawing",))
         with html.Div(classes="pv-notes"):
             with html.Div(v_if="measured.length", classes="pv-measured"):
@@ -377,6 +384,10 @@ def _view(app: Any) -> None:
                     data_action="clear-distances", click=app.selecting.clear_distances,
                 )  # fmt: skip
             html.Div("{{ no_room }}", v_if="no_room", data_value="no-room")
+            html.Div(
+                "{{ measuring ? 'Click the second point' : 'Click two points, or drag' }} (Esc: stop)",
+                v_if="tool === 'measure'", data_value="measuring",
+            )  # fmt: skip
             html.Div(
                 "Click where {{ placing_name }} shall be (Esc: stop)", v_if="tool === 'place'", data_value="placing"
             )

@@ -306,12 +306,15 @@ def matrix_image(matrix: np.ndarray, logarithmic: bool) -> str:
 def build(app: Any) -> None:
     """Build the panel; client/matrix.js tells cells and takes clicks on them."""
     matrix = app.matrix
-    with html.Div(v_if="matrix.open", classes="pv-matrix", id="pv-matrix"):
+    with html.Div(v_if="matrix.open", classes=("['pv-matrix', matrix_alone ? 'pv-alone' : '']",), id="pv-matrix"):
         with html.Div(classes="pv-pair px-3 pt-1"):
             html.Span("Matrix", classes="pv-name pa-0", style="flex: 1")
             ui.button("Settings", v_if="matrix.n", variant="text", click=matrix.change, data_action="matrix-settings")
             ui.button("Remove", v_if="matrix.n", variant="text", click=matrix.close, data_action="remove-matrix",
                       title="Take the matrix away")  # fmt: skip
+            ui.icon_button("mdi-arrow-expand-horizontal", "In place of the frame, or beside it", v_if="matrix.n",
+                           click="matrix_alone = !matrix_alone", data_action="matrix-alone",
+                           **ui.pressed("matrix_alone", "text"))  # fmt: skip
             ui.icon_button("mdi-close", "Fold away", data_action="fold-matrix", click=(matrix.open, "[false]"))
         with html.Div(v_if="matrix.settings", id="matrix-settings"):
             _settings(matrix)
@@ -356,7 +359,7 @@ def _settings(matrix: MatrixActions) -> None:
         ("names", "Names", "matrix.form.names", "What labels are called: a table of FreeSurfer, ITK-SNAP or BIDS"),
         ("contrast", "Of", "matrix.form.contrasts", "What is put together: streamlines, or their numbers"),
         ("weights", "Weights", "matrix.form.weights", "Of streamlines, such as SIFT2's"),
-        ("statistic", "Statistic", repr([{"title": "usual", "value": ""},
+        ("statistic", "Statistic", repr([{"title": "default", "value": ""},
                                          *({"title": one, "value": one} for one in STATISTICS)]),
          "Of a pair's numbers: the sum of counts, else the mean"),
     ):  # fmt: skip

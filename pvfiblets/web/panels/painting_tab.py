@@ -280,7 +280,7 @@ def build(app: Any) -> None:
                     click=f"tool = tool === '{name}' ? 'rotate' : '{name}'", **ui.pressed(f"tool === '{name}'"),
                 ):  # fmt: skip
                     v3.VIcon(icon, size=18)
-                    v3.VTooltip(hint, activator="parent", location="bottom")
+                    ui.tooltip(hint)
         with html.Div(classes="pv-pair px-3 pt-1", v_if="!['outline', 'sphere'].includes(tool)"), v3.VBtnToggle(
             model_value=("brush_deep ? '3-D' : '2-D'",), update_modelValue="brush_deep = $event === '3-D'",
             mandatory=True, density="compact", style="height: 28px",
@@ -310,6 +310,10 @@ def build(app: Any) -> None:
                 ui.number_field(style="width: 52px", value=("brush",),
                                 change=(paint.set_brush, "[$event.target.value]"), aria_label="Radius, mm")  # fmt: skip
                 html.Span("mm", classes="pv-small")
+        html.Div(
+            "The list under each region chooses which streamlines stay visible.", classes="pv-small px-3 pt-1",
+            data_value="painted-use",
+        )  # fmt: skip
         with html.Div(v_for="r in painting.regions", key="r.name", data_painted=("r.name",), classes="pv-region"):
             with html.Div(classes="pv-pair px-3 pt-1"):
                 eye("r.visible", click=(paint.set, "[r.name, 'visible', !r.visible]"))

@@ -11,6 +11,7 @@ from pvfiblets.web.panels.csv_tables import profile_csv
 from pvfiblets.web.server.rpc_allowlist import number
 
 ROWS = 200
+CLICK = 3.0  # pixels: a shorter drag is a click
 
 
 class SelectionActions(Actions):
@@ -19,12 +20,13 @@ class SelectionActions(Actions):
     def __init__(self, app: Any) -> None:
         super().__init__(app)
         self._profile: str | None = None
+        self._begin: list[float] | None = None  # the first of two clicks of the tool that measures, mm
         self._shown: Any = None
 
     # Tools
 
-    def point(self, tool: str, places: Any, add: bool) -> None:
-        """Take what a tool did over the picture."""
+    def point(self, tool: str, places: Any, add: bool) -> bool:
+        """Apply a tool over the picture; return True if the tool needs another click."""
         if not isinstance(places, list) or not 1 <= len(places) <= 501:
             raise ValueError("a tool needs places in the picture")
         width, height = self._app.stream.settle()
@@ -37,13 +39,13 @@ class SelectionActions(Actions):
         mode = "add" if add is True else "replace"
         scene = self._app.scene
         if tool == "measure":
-            self._measure(pixels[0], pixels[-1])
-            return
+            far = max(abs(end - begin) for begin, end in zip(pixels[0], pixels[-1], strict=True))
+            return self._measure(pixels[-1:] if far < CLICK else [pixels[0], pixels[-1]])
         if tool == "place":
             self._app.regions.place(*pixels[-1])
-            return
+            return False
         far = max(abs(pixels[-1][0] - pixels[0][0]), abs(pixels[-1][1] - pixels[0][1]))
-        if tool == "pick" or (tool == "box" and far < 3) or (tool == "lasso" and len(pixels) < 3):
+        if tool == "pick" or (tool == "box" and far < CLICK) or (tool == "lasso" and len(pixels) < 3):
             found = scene.selection.pick_at(*pixels[-1], mode=mode, tolerance=6.0)
             if found is None and mode == "replace":
                 self._app.say("There is no streamline there.")
@@ -58,15 +60,29 @@ class SelectionActions(Actions):
                 self._app.page.tab = "selection"
                 self._app.page.right_open = True
         self._app.refresh()
+        return False
 
-    def _measure(self, first: tuple[float, float], last: tuple[float, float]) -> None:
-        app = self._app
-        found = app.scene.measurements.measure(*first, *last)
-        if found is None:
-            app.say("Begin and end on something that is drawn.")
+    def _measure(self, pixels: list[tuple[float, float]]) -> bool:
+        """Take both ends of a distance, or one end of two clicks."""
+        app, measurements = self._app, self._app.scene.measurements
+        places = [measurements.place_at(*pixel) for pixel in pixels]
+        if None in places:
+            app.say("There is nothing to measure at this point; choose a line, surface or slice.")
+            return self._begin is not None
+        if len(places) == 1 and self._begin is not None:
+            places.insert(0, self._begin)
+        if len(places) == 2:
+            self.end_measuring()
+            measurements.add_measurement(*places)
+            app.stream.request()
         else:
-            app.scene.measurements.add_measurement(found["from"], found["to"])
-        app.stream.request()
+            self._begin = places[0]
+            app.page.measuring = True
+        return self._begin is not None
+
+    def end_measuring(self) -> None:
+        """Forget the first of two clicks."""
+        self._begin, self._app.page.measuring = None, False
 
     def remove_distance(self, row: int) -> None:
         """Take one measured distance away."""

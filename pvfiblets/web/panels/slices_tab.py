@@ -241,7 +241,7 @@ def layout_menu(app: Any) -> None:
         data_action="layouts", color=("slicing.layout !== '3d' ? 'primary' : ''",),
     ):  # fmt: skip
         v3.VIcon("mdi-view-split-vertical", size=20)
-        v3.VTooltip("Slices and views (X)", activator="parent", location="bottom")
+        ui.tooltip("Slices and views (X)")
         with v3.VMenu(activator="parent"), v3.VList(density="compact", id="layouts"):
             for name, title in LAYOUTS.items():
                 v3.VListItem(

@@ -150,6 +150,7 @@ def _filter(app: Any) -> None:
             ui.select(
                 items=("filters.groups",), model_value=("filters.shown_groups",), multiple=True, chips=True,
                 closable_chips=True, clearable=True, placeholder="all", classes="mx-3",
+                aria_label="Groups",
                 update_modelValue=(app.filtering.set_groups, "[$event]"),
             )  # fmt: skip
         html.Div("Random subset", classes="pv-head")
@@ -250,7 +251,7 @@ def _selection(app: Any) -> None:
                 "Table as CSV", size="small", data_action="table-csv",
                 click="trigger('selection_csv').then((t) => t && utils.download('selection.csv', t, 'text/csv'))",
             )  # fmt: skip
-        with html.Div(style="max-height: 46vh; overflow: auto", classes="px-2"):
+        with html.Div(style="max-height: 46vh; overflow: auto", classes="px-2", tabindex="0"):
             with html.Table(classes="pv-table", id="picked"):
                 with html.Thead():
                     with html.Tr():
@@ -263,6 +264,7 @@ def _selection(app: Any) -> None:
             with ui.labelled("Profile of"):
                 ui.select(
                     items=("selection.profiles",), model_value=("selection.profile",),
+                    aria_label="Profile of",
                     update_modelValue=(app.selecting.set_profile, "[$event]"),
                 )  # fmt: skip
             html.Div(v_html=("selection.chart",), id="profile")

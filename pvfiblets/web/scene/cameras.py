@@ -28,12 +28,19 @@ class Cameras:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
+        self._fitted: tuple[str, dict[str, Any]] | None = None  # the view that was chosen last, and its camera
 
     def view(self, name: str) -> None:
         """Look at everything from one of the directions `VIEWS`; the coronal one is seen from the front."""
         if name not in VIEWS:
             raise ValueError(f"view is {shown(name)}; choose one of {', '.join(VIEWS)}")
         point_camera(self.scene.plotter, name)
+        self._fitted = name, self.camera()
+
+    def refit(self) -> None:
+        """Fit the view to a window of another shape, unless the camera was moved since."""
+        if self._fitted is not None and self._fitted[1] == self.camera():
+            self.view(self._fitted[0])
 
     def reset(self) -> None:
         """Move the camera until everything is in the picture, without turning it."""

@@ -34,15 +34,17 @@ def _line_scalars(fiblets: Any) -> Choices:
     from pvfiblets.plotting.fiblets.scalars import DENSITY, ENDS, GROUP, ID, RANDOM
     from pvfiblets.plotting.scalars import COUNTED, ORIENTATION, UNITS
 
-    found: list[tuple[Any, str]] = [(ORIENTATION, "orientation"), (None, "one colour")]
+    usual: list[tuple[Any, str]] = [(ORIENTATION, "orientation"), (None, "one colour"), (RANDOM, "a colour each")]
+    ends = (ENDS, "direction from end to end")
+    # The fourth of the usual ones, which stand before the scene's images.
+    found: list[tuple[Any, str]] = [*usual, (GROUP, "group"), ends] if fiblets.groups else [*usual, ends]
     colours = [
         name
         for name, rows in fiblets.per_streamline.items()
         if rows.ndim == 2 and rows.shape[1] in (3, 4) and rows.dtype.kind in "uf"
     ]
     found += [(name, UNITS.get(name, name)) for name in [*value_names(fiblets), *colours]]
-    found += [(ENDS, "direction from end to end"), (ID, "number"), (RANDOM, "a colour each"), (DENSITY, COUNTED)]
-    return [*found, (GROUP, "group")] if fiblets.groups else found
+    return [*found, (ID, "number"), (DENSITY, COUNTED)]
 
 
 def _tube_scalars(tubes: Any) -> Choices:

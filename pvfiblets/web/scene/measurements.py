@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from pvfiblets.web.scene.cameras import NEAR
 from pvfiblets.web.scene.distance_label import hidden_distances
 from pvfiblets.web.session.document import Measurement
@@ -25,21 +23,20 @@ class SceneMeasurements:
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
 
-    def measure(self, x0: float, y0: float, x1: float, y1: float) -> dict[str, Any] | None:
-        """Return the straight distance between what two pixels show; lines of measurements are looked through."""
+    def place_at(self, x: float, y: float) -> list[float] | None:
+        """Return the position on the surface, line or slice at a pixel, mm; distances are looked through."""
+        pane = self.scene.slicing.pane_at(x, y)
+        if pane is not None:
+            return [float(part) for part in pane.position_at(x, y)]
         with hidden_distances(self.scene.plotter):
-            begin, end = (
-                self.scene.cameras.place_at(x0, y0, tolerance=NEAR),
-                self.scene.cameras.place_at(x1, y1, tolerance=NEAR),
-            )
-        if begin is None or end is None:
-            return None
-        return {"mm": float(np.linalg.norm(np.subtract(begin, end))), "from": begin, "to": end}
+            return self.scene.cameras.place_at(x, y, tolerance=NEAR)
 
     def add_measurement(self, begin: Any, end: Any) -> Measurement:
         """Keep the distance between two places, mm, in the picture; it can be undone."""
         before = self.scene.state.measurements
-        (found,) = check_measurements([[begin, end]])
+        found = next(iter(check_measurements([[begin, end]])), None)
+        if found is None:
+            raise ValueError("both ends of the distance are the same point; choose two points")
         if len(before) >= MOST_MEASUREMENTS:
             raise ValueError(f"there are {MOST_MEASUREMENTS} measurements, which is the most; remove one first")
         self.scene.become(replace(self.scene.state, measurements=(*before, found)), f"measure {found.text}")
@@ -60,7 +57,7 @@ class SceneMeasurements:
 
 
 def check_measurements(value: Any) -> tuple[Measurement, ...]:
-    """Return measurements of pairs of places, mm."""
+    """Return measurements of pairs of places, mm; pairs without a distance are dropped."""
     if not isinstance(value, list) or len(value) > MOST_MEASUREMENTS:
         raise ValueError(f"measurements is {shown(value)}; give a list of {MOST_MEASUREMENTS} at most")
     found = []
@@ -70,5 +67,7 @@ def check_measurements(value: Any) -> tuple[Measurement, ...]:
         begin, end = (numbers(place, "place of a measurement", 3) for place in pair)
         if max(map(abs, (*begin, *end))) > _FARTHEST:
             raise ValueError(f"a measurement is from {begin} to {end}; give places within {_FARTHEST:g} mm")
-        found.append(Measurement((begin[0], begin[1], begin[2]), (end[0], end[1], end[2])))
+        measured = Measurement((begin[0], begin[1], begin[2]), (end[0], end[1], end[2]))
+        if measured.mm > 0.0:  # older sessions hold some that clicks without a drag have left
+            found.append(measured)
     return tuple(found)

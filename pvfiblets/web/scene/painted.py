@@ -38,13 +38,13 @@ class ScenePainting:
     # Regions
 
     def add_painted(self, layer_id: str | None = None) -> Painted:
-        """Add a region without voxels."""
+        """Add a region without voxels; streamlines that pass through it stay visible once it has some."""
         painting = self.scene.state.painting or self._begun(layer_id)
         if len(painting.regions) >= MOST_REGIONS:
             raise ValueError(f"there are {MOST_REGIONS} painted regions, which is the most; remove one first")
         label = max((one.label for one in painting.regions), default=0) + 1
         name = unique_name((one.name for one in painting.regions), "region")
-        made = Painted(name, label, hex_colour(distinct_colour(label - 1)))
+        made = Painted(name, label, hex_colour(distinct_colour(label - 1)), use="passes")
         wanted = replace(painting, regions=(*painting.regions, made))
         self.scene.become(replace(self.scene.state, painting=wanted), f"add {name}")
         return made

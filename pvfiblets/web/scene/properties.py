@@ -14,6 +14,8 @@ __all__ = ["TYPES", "Property"]
 TYPES = ("choice", "number", "range", "numbers", "colour", "bool", "text")
 """``range`` is two numbers, the low one first; ``numbers`` a list of them."""
 
+USUAL = 4  # choices of a list that stand before the scene's images
+
 Limits = tuple[float, float]
 Choices = Sequence[tuple[Any, str]]
 
@@ -51,8 +53,8 @@ class Property(Row):
 
     def choices_for(self, data: Any, volumes: Choices = ()) -> Choices:
         """Return values and labels that can be chosen for some data, in a scene with some volumes."""
-        found = self.choices(data) if callable(self.choices) else self.choices
-        return [*(found or ()), *(volumes if self.volumes else ())]
+        found = list((self.choices(data) if callable(self.choices) else self.choices) or ())
+        return [*found[:USUAL], *volumes, *found[USUAL:]] if self.volumes else found
 
     def limits_for(self, data: Any) -> Limits | None:
         """Return least and greatest value for some data."""

@@ -36,6 +36,11 @@ UPLOAD, SESSION = "/upload", "/session"
 LOGS = ("pvfiblets.web", "aiohttp.server", "asyncio")
 
 
+async def _unnamed(_request: web.Request, response: web.StreamResponse) -> None:
+    """Name the program without the versions of its libraries, which aiohttp tells everybody."""
+    response.headers["Server"] = "pvfiblets"
+
+
 class FrontServer:
     """The public server."""
 
@@ -64,6 +69,7 @@ class FrontServer:
             )
         self._relay.start()
         app = web.Application(middlewares=[self._guard], client_max_size=64 * 1024)
+        app.on_response_prepare.append(_unnamed)
         app.router.add_post("/token", self._enter)
         app.router.add_post("/new", self._new)
         app.router.add_post("/end", self._end)

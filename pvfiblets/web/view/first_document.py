@@ -26,4 +26,5 @@ def first_document() -> str:
     text, replaced = _FETCHED.subn(WAITING, text)
     if replaced != 1 or "loading.tpl" in text:
         raise RuntimeError("index.html of trame-client has another form; see pvfiblets/web/view/first_document.py")
+    text = text.replace(",maximum-scale=1,minimum-scale=1", "")  # whoever needs it may zoom
     return text.replace("<title>trame is built by Kitware</title>", "<title>pvfiblets</title>")

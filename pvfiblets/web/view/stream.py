@@ -65,6 +65,7 @@ class PictureStream:
         elsewhere: Callable[[], bool] = lambda: False,
         left_out: Callable[[], Any] = lambda: None,
         pane_at: Callable[[float, float], Any] = lambda _x, _y: None,
+        resized: Callable[[], None] = lambda: None,
     ) -> None:
         from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
@@ -80,6 +81,7 @@ class PictureStream:
         self._pending = pending  # the number of messages that the network has not taken yet
         self._failed = failed  # told of an error while drawing
         self._after = drawn
+        self._resized = resized
         # asked before each frame: whether somebody else draws, so that no picture is needed
         self._elsewhere = elsewhere
         self.given_up = 0  # whole pictures that somebody acted before the end of
@@ -128,6 +130,7 @@ class PictureStream:
             self._pace = Pace()  # what other sizes cost says nothing
             self._plotter.render_window.SetDPI(self._dpi)
             self._plotter.iren.interactor.UpdateSize(*self._pixels)
+            self._resized()
         self.request()  # always: a page that was reloaded has no picture yet
 
     def on_interaction(self, _origin: str, event: dict[str, Any]) -> None:
