@@ -46,7 +46,7 @@ def draw_filtered(folder: Path, brain: Streamlines) -> None:
         "all": {"threshold": None},
         "FA of 0.45 and more": {"threshold": 0.45},
         "FA of 0.62 and more": {"threshold": 0.62},
-        "the same, by direction": {"threshold": 0.62, "scalars": "orientation", "light_on_dark": True},
+        "the same, by direction": {"threshold": 0.62, "scalars": "orientation"},
     }
     for index, (title, setting) in enumerate(settings.items()):
         plotter.subplot(*divmod(index, 2))

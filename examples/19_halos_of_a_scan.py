@@ -51,7 +51,7 @@ def main(folder: Path) -> None:
 
     plotter.subplot(0, 1)
     plotter.set_background("black", all_renderers=False)
-    plotter.add_halo_points(points, **sizes, displacement="square root", light_on_dark=True)
+    plotter.add_halo_points(points, **sizes, displacement="square root")
     plotter.camera_position = [(420.0, 60.0, -330.0), (390.0, 215.0, 90.0), (0.0, -1.0, 0.0)]
     plotter.screenshot(folder / "halos_of_a_scan.png")
     print(f"{actor.explain()['points_total']:,} points, {actor.explain()['gpu_bytes'] / 1e6:.0f} MB with pictures")

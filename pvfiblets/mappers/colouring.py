@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,8 +38,8 @@ class Colouring:
     mode : str
         One of `pvfiblets.colour_modes.MODES`. `values` holds numbers or colours of lines, `source` names the array of
         points; `lut` is the table. ``'pixel_count'`` is of fiblets with a `pvfiblets.mappers.density.Density`.
-    color : sequence of 3 floats, default (1, 1, 1)
-        RGB between 0 and 1, for ``'solid'``.
+    color : sequence of 3 floats, optional, default (1, 1, 1)
+        RGB between 0 and 1, for ``'solid'``; None for black on a light background and white on a dark one.
     values : numpy.ndarray, optional
         (n_streamlines, 3 or 4) uint8 or (n_streamlines,) numbers.
     source : str or VolumeSource, optional
@@ -71,7 +71,7 @@ class Colouring:
     """
 
     mode: str = "orientation"
-    color: tuple[float, ...] = (1.0, 1.0, 1.0)
+    color: tuple[float, ...] | None = (1.0, 1.0, 1.0)
     values: npt.NDArray[Any] | None = None
     source: str | VolumeSource | None = None
     lut: npt.NDArray[np.uint8] | None = None
@@ -88,7 +88,8 @@ class Colouring:
         """Check the fields and bring them into one form."""
         if self.mode not in MODES:
             raise ValueError(f"mode is {self.mode!r}; expected one of {tuple(MODES)}")
-        self._set("color", _rgba(self.color, "color")[:3])
+        if self.color is not None:
+            self._set("color", _rgba(self.color, "color")[:3])
         self._set("nan_color", _rgba(self.nan_color, "nan_color"))
         for name in ("below_color", "above_color"):
             if getattr(self, name) is not None:
@@ -146,6 +147,10 @@ class Colouring:
     def kind(self) -> ColourMode:
         """The mode's properties."""
         return MODES[self.mode]
+
+    def with_ink(self, ink: tuple[float, ...]) -> Colouring:
+        """Return a colouring of that colour where it has none of its own."""
+        return self if self.color is not None else replace(self, color=ink)
 
     @property
     def maps_on_gpu(self) -> bool:

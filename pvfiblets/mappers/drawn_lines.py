@@ -167,7 +167,7 @@ def _tube_values(tubes: Any, name: str, segments: npt.NDArray[np.int64]) -> npt.
 
 
 def halo_lines(
-    drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDArray[np.int64], filtering: Any = None
+    drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDArray[np.int64], filtering: Any, ink: Any
 ) -> LineData:
     """Return lines with halos, or points as lines of one point, without filtered ones."""
     points = np.asarray(drawn.points)
@@ -181,7 +181,7 @@ def halo_lines(
         found = np.asarray(drawn.values[source])[rows]
         return _bytes(found.astype(np.float64)) if colours else found
 
-    lines = _coloured(lines, colouring, values)
+    lines = _coloured(lines, colouring, values, ink=ink)
     kept = np.ones(len(rows), bool)
     if look.filter_by is not None:
         values = np.asarray(drawn.values[look.filter_by])[rows]
@@ -199,11 +199,18 @@ def halo_lines(
 
 
 def _coloured(
-    lines: LineData, colouring: Colouring | None, values: Any, per_point: Mapping[str, Any] = MappingProxyType({})
+    lines: LineData,
+    colouring: Colouring | None,
+    values: Any,
+    per_point: Mapping[str, Any] = MappingProxyType({}),
+    ink: Any = None,
 ) -> LineData:
-    """Return lines with the colours of their points; without where one opaque colour is that of all."""
-    if colouring is None or (colouring.mode == "solid" and not colouring.translucent()):
+    """Return lines with the colours of their points; without where the property's colour is that of all."""
+    if colouring is None:
         return lines
+    if colouring.mode == "solid" and colouring.color is not None and not colouring.translucent():
+        return lines
+    colouring = colouring.with_ink(ink)
     kind, of_lines = colouring.kind, colouring.streamline_colours()
     if of_lines is not None:
         colours = of_lines[np.repeat(lines.ids, np.diff(lines.offsets))]

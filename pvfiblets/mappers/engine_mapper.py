@@ -40,11 +40,13 @@ from pvfiblets.mappers.scene import (
     lenses,
     others_before,
     pixel_scale,
+    renderers_of,
     smoothers,
     to_array,
     world_planes,
 )
 from pvfiblets.mappers.shader_effects import Draw, MapperEffect, prepare_effects, set_effect_uniforms, styled
+from pvfiblets.mappers.shading import ink_on
 from pvfiblets.mappers.shifted_cameras import is_shifted
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.windows import (
@@ -235,6 +237,11 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         """Bring the actor's shader pieces and its translucency up to date."""
         self._link.show(self.features, self._translucent)
 
+    @property
+    def ink(self) -> tuple[float, float, float]:
+        """Black, or white where the background of the actor's first renderer is dark."""
+        return ink_on(None if self.actor is None else next(renderers_of(self.actor), None))
+
     def _property_color(self) -> tuple[float, float, float]:
         return (1.0, 1.0, 1.0) if self.actor is None else self.actor.GetProperty().GetDiffuseColor()
 
@@ -315,9 +322,12 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
                     outside = self._outside(context, slot, renderer, viewport)
                 buffer = engine.render(view, style, outside=outside)
             textures = resolve_textures(context.ctx, slot, buffer, self._colouring)
+            colouring = self._colouring
+            if colouring.color is None:
+                colouring = colouring.with_ink(ink_on(renderer))
             draw = Draw(
                 context.ctx, engine, buffer, frame, view, style, renderer, self._drawn, actor,
-                self._colouring, dict(textures),
+                colouring, dict(textures),
             )  # fmt: skip
             textures |= prepare_effects(slot, self._effects, draw)
             units = context.texture_units(len(textures))
@@ -325,7 +335,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
                 texture.use(unit)
         for unit, name in zip(units, textures, strict=True):
             program.SetUniformi(name, unit)
-        set_uniforms(program, frame, style, self._drawn, self._colouring)
+        set_uniforms(program, frame, style, self._drawn, colouring)
         set_effect_uniforms(slot, self._effects, program, draw)
         if smoother is not None and not smoother.sample:
             slack, beside = self._drawn.promise + style.reach, style.half_width + SMOOTHED_BESIDE

@@ -225,7 +225,8 @@ class HaloMapper(FilteredMapper[HaloOptions]):
         lines = isinstance(self._drawn, HaloLines)
         counts = np.diff(self._drawn.offsets) if lines else np.ones(self._drawn.n_points, np.int64)
         ids = thinned(counts, budget)
-        found = halo_lines(self._drawn, self._look, self._colouring if colours else None, ids, self._filtering)
+        colouring = self._colouring if colours else None
+        found = halo_lines(self._drawn, self._look, colouring, ids, self._filtering, self.ink)
         return self._within_cuts(found).to_polydata(segments=segments and lines, vertices=not lines)
 
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:

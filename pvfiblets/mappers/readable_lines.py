@@ -100,7 +100,7 @@ class LineReading:
         placed = b"" if actor is None else to_array(actor.GetMatrix()).tobytes()
         return (
             mapper._drawn, mapper.colouring if colours else None, getattr(mapper, "_filtering", None),  # noqa: SLF001
-            getattr(mapper, "_look", None), *cuts, placed, mapper._thickness,  # noqa: SLF001
+            getattr(mapper, "_look", None), *cuts, placed, mapper._thickness, mapper.ink,  # noqa: SLF001
         )  # fmt: skip
 
     def watch(self, renderer: vtkRenderer) -> None:

@@ -71,8 +71,7 @@ class Ink(ShaderEffect):
         """Set the colour."""
         color = self.color
         if color is None:
-            light = float(np.mean(background(draw.renderer), axis=0) @ LUMINANCE) > 0.5
-            color = (0.0, 0.0, 0.0) if light else (1.0, 1.0, 1.0)
+            color = ink_on(draw.renderer)
         program.SetUniform3f("fibletInk", color)
 
 
@@ -300,6 +299,16 @@ def background(renderer: Any) -> tuple[Colour, Colour]:
     """Return the colours of a renderer's background at its lower and its upper edge."""
     lower = tuple(renderer.GetBackground())
     return lower, tuple(renderer.GetBackground2()) if renderer.GetGradientBackground() else lower
+
+
+def is_light(renderer: Any) -> bool:
+    """Return True if a renderer's background is light."""
+    return float(np.mean(background(renderer), axis=0) @ LUMINANCE) > 0.5
+
+
+def ink_on(renderer: Any) -> Colour:
+    """Return black on a light background, white on a dark one; black without a renderer."""
+    return (0.0, 0.0, 0.0) if renderer is None or is_light(renderer) else (1.0, 1.0, 1.0)
 
 
 def widen(program: Any, draw: Draw) -> None:

@@ -55,7 +55,7 @@ def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring
 def colour_uniforms(colouring: Colouring, fiblets: Any) -> dict[str, int | float | tuple[float, ...]]:
     """Return the uniforms of ``shaders/colour`` by their names."""
     if not colouring.maps_on_gpu or colouring.lut is None:
-        return {} if colouring.kind.numbers else {"colour_solid": tuple(colouring.color)}
+        return {} if colouring.kind.numbers or colouring.color is None else {"colour_solid": colouring.color}
     reference = getattr(colouring.source, "reference", None)  # of an image
     if reference is None:
         reference = fiblets.value_reference(colouring.source)

@@ -153,7 +153,7 @@ class ColouredActor(Settings, pv.Actor):
     def legend_color(self) -> pv.Color:
         """One colour that stands for all: their own, the middle of the colour map, or the mean."""
         if self._scalars is None:
-            return pv.Color(self.prop.color)
+            return self._solid_color()
         if self._scalars.mapped:
             return pv.Color(self._table.values[self._table.n_values // 2, :3].tolist())
         return pv.Color(self._mean_colour(self._scalars))
@@ -168,6 +168,15 @@ class ColouredActor(Settings, pv.Actor):
     def shows_labels(self) -> bool:
         """Whether the numbers that colour the actor are labels, each with a name."""
         return self._scalars is not None and self._scalars.categories is not None
+
+    @property
+    def _default_color(self) -> Any:
+        """Colour of an actor without scalars and color; None for the ink of its background."""
+        return self._theme.color
+
+    def _solid_color(self) -> pv.Color:
+        color = self._default_color if self._settings.color is None else self._settings.color
+        return pv.Color(self._mapper.ink if color is None else color)
 
     def _read_color(self) -> pv.Color | None:
         return None if self._settings.color is None else pv.Color(self._settings.color)
@@ -228,11 +237,10 @@ class ColouredActor(Settings, pv.Actor):
                 if self._opacities.transfer is not None:
                     apply_transfer(self._table, self._opacities.transfer)
             self._linked_table.note()
-        self._mapper.colouring = self._faded(make_colouring(self._settings, scalars, self._table, self._theme))
+        self._mapper.colouring = self._faded(make_colouring(self._settings, scalars, self._table, self._default_color))
         self._scalars = scalars
-        colour = pv.Color(self._settings.color, default_color=self._theme.color)
         with own_writes():
-            self.prop.color = colour if scalars is None else "white"
+            self.prop.color = self._solid_color() if scalars is None else "white"
         self._property_color = self.prop.GetDiffuseColor()  # GetColor() is mixed with that of highlights
 
     def take_table(self) -> None:
@@ -253,7 +261,7 @@ class ColouredActor(Settings, pv.Actor):
         if self._scalars is None or not self._scalars.mapped:
             return
         try:
-            colouring = self._faded(make_colouring(self._settings, self._scalars, self._table, self._theme))
+            colouring = self._faded(make_colouring(self._settings, self._scalars, self._table, self._default_color))
         except ValueError:  # between two changes that belong together
             return
         self._mapper.colouring = colouring

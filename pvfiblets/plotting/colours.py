@@ -161,13 +161,12 @@ def _first(*found: Any) -> Any:
 
 
 def make_colouring(
-    settings: ColourSettings, scalars: Scalars | None, table: pv.LookupTable, theme: Any
+    settings: ColourSettings, scalars: Scalars | None, table: pv.LookupTable, default_color: Any
 ) -> Colouring:
     """Return what the mapper needs to colour the same way as ``table`` does."""
     if scalars is None:
-        return Colouring(
-            mode="solid", color=pv.Color(settings.color, default_color=theme.color).float_rgb
-        )
+        color = default_color if settings.color is None else settings.color
+        return Colouring(mode="solid", color=None if color is None else pv.Color(color).float_rgb)
     if scalars.kind == "point_rgba":
         return Colouring(mode="point_rgba", source=scalars.name, has_alpha=scalars.has_alpha)
     if scalars.kind == "point_packed":

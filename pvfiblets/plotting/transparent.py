@@ -53,13 +53,12 @@ def _unmixed(on_first: npt.NDArray[np.float64], on_second: npt.NDArray[np.float6
 @contextmanager
 def _on_ground(plotter: Any, number: int) -> Iterator[None]:
     """Draw all renderers of a plotter on the first or the second background in this scope."""
-    from pvfiblets.mappers.shading import LUMINANCE, background
+    from pvfiblets.mappers.shading import is_light
 
     renderers = list(plotter.renderers)
     before = [(one.GetBackground(), one.GetGradientBackground(), one.GetTexturedBackground()) for one in renderers]
     for renderer in renderers:
-        light = float(np.mean(background(renderer), axis=0) @ LUMINANCE) > 0.5
-        renderer.SetBackground((_LIGHT if light else _DARK)[number])
+        renderer.SetBackground((_LIGHT if is_light(renderer) else _DARK)[number])
         renderer.SetGradientBackground(False)
         renderer.SetTexturedBackground(False)
     try:

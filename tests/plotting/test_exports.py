@@ -134,6 +134,16 @@ def test_obj_and_vrml_hold_decoded_points(plotter, fiblets, tmp_path):
     np.testing.assert_array_equal(plotter.screenshot(), before)
 
 
+@pytest.mark.parametrize(("ground", "ink"), [("white", 0), ("black", 255)])
+def test_halos_of_no_colour_have_the_ink_of_the_picture(plotter, three_lines, tmp_path, ground, ink):
+    plotter.add_halo_lines(three_lines)
+    plotter.background_color = "grey"
+    gltf(plotter, tmp_path)
+    plotter.background_color = ground
+    ((_, colours, _, _, _),) = gltf(plotter, tmp_path)
+    assert np.unique(colours[:, :3]).tolist() == [ink]
+
+
 def test_tubes_are_surfaces_and_halos_lines(plotter, three_lines, tmp_path):
     lines = three_lines.to_polydata()
     plotter.add_spline_tubes(lines, radius=1.5, scalars="height", show_scalar_bar=False)

@@ -14,15 +14,17 @@ import pvfiblets as pf
 from pvfiblets import compress, write
 from pvfiblets.halos import HaloLines, HaloPoints
 
+from .views import facing as facing_camera
 from .views import facing_shot as shot
+from .views import shot as picture_of
 
 PIXELS = 5.0  # a mm in the view `flat`
 GREEN, WHITE, BLACK, BACK = (0, 255, 0), (255, 255, 255), (0, 0, 0), (64, 64, 64)
 BAR = np.array([(x, 0.0, 0.0) for x in np.linspace(-15.0, 15.0, 31)])
 LOOKS = {"line_width": 2.0, "strip_width": 8.0, "max_displacement": 4.0, "width_cue": 0.0, "tapering": False,
-         "smooth": False, "min_width": 0.0}  # fmt: skip
+         "smooth": False, "min_width": 0.0, "light_on_dark": False}  # fmt: skip
 OF_POINTS = {"point_size": 2.0, "halo_size": 8.0, "max_displacement": 4.0, "width_cue": 0.0, "smooth": False,
-             "min_width": 0.0}  # fmt: skip
+             "min_width": 0.0, "light_on_dark": False}  # fmt: skip
 
 
 @pytest.fixture
@@ -200,6 +202,40 @@ def test_points_have_sizes_and_filters(stage):
         stage.add_halo_points(BAR, point_size=-2.0)
     with pytest.raises(KeyError, match="orientation"):
         stage.add_halo_points(HaloPoints(BAR), scalars="orientation")
+
+
+@pytest.mark.parametrize("add_halos", ["add_halo_lines", "add_halo_points"])
+def test_default_colours_follow_the_background(plotter, add_halos):
+    sizes = LOOKS if add_halos == "add_halo_lines" else OF_POINTS
+    actor = getattr(plotter, add_halos)(BAR, **{**sizes, "light_on_dark": None})
+    for ground, ink in (("black", WHITE), ("white", BLACK), ("#303060", WHITE), ("#e0e0c0", BLACK)):
+        plotter.background_color = ground
+        image, rest = shot(plotter), pv.Color(ground).int_rgb
+        assert {tuple(map(int, colour)) for colour in np.unique(image.reshape(-1, 3), axis=0)} == {rest, ink}
+        assert (image == np.array(ink)).all(axis=2).sum() > 500
+        assert (actor.color, actor.halo_color) == (pv.Color(ink), "background")
+        assert actor.legend_color == pv.Color(ink)
+    plotter.set_background("black", top="#202020")  # dark at both ends
+    assert (shot(plotter)[100] == np.array(WHITE)).all(axis=1).any()
+    assert actor.copy().light_on_dark is None
+
+
+def test_an_actor_in_two_subplots_has_the_ink_of_each():
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 100), shape=(1, 2))
+    actor = plotter.add_halo_lines(BAR, **{**LOOKS, "light_on_dark": None})
+    plotter.set_background("white", all_renderers=False)
+    plotter.subplot(0, 1)
+    plotter.add_actor(actor)
+    plotter.set_background("black", all_renderers=False)
+    plotter.disable_anti_aliasing()
+    for number in (0, 1):
+        plotter.subplot(0, number)
+        facing_camera(plotter)
+    image = picture_of(plotter)
+    assert (image[:, :100].min(), image[:, :100].max()) == (0, 255)
+    assert (image[40, 50], image[40, 150]) == (pytest.approx(255), pytest.approx(0))
+    assert (image[50, 50], image[50, 150]) == (pytest.approx(0), pytest.approx(255))
+    plotter.close()
 
 
 def test_dark_and_light_change_places_and_what_was_given_stays(stage):

@@ -43,8 +43,9 @@ def shot(plotter):
 def eyes():
     """A picture for every kind of stereo that VTK has for a flat screen, and one of a single eye."""
     plotter = opened()
-    plotter.add_halo_lines(curves(), line_width=0.8, strip_width=4.0, color="darkred")
-    plotter.add_halo_points(np.random.default_rng(1).normal(size=(200, 3)) * 12, point_size=1.5, halo_size=5.0)
+    plotter.add_halo_lines(curves(), line_width=0.8, strip_width=4.0, color="darkred", halo_color="white")
+    dots = np.random.default_rng(1).normal(size=(200, 3)) * 12
+    plotter.add_halo_points(dots, point_size=1.5, halo_size=5.0, light_on_dark=False)
     plotter.add_mesh(pv.Sphere(radius=10, center=(20, 0, 0)), color="steelblue")
     looked_at(plotter)
     found = {"mono": shot(plotter)}

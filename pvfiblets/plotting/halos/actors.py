@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 
 BACKGROUND = "background"
 
+# Default colours of lines and of halos, by `light_on_dark`.
+_INKS = {True: "white", False: "black", None: None}
+_PAPERS = {True: "black", False: "white", None: BACKGROUND}
+
 
 class PlottedHalos(PlottedLines[HaloOptions], HaloMapper):
     """A mapper of lines or points with halos, with scalar bars."""
@@ -73,8 +77,6 @@ class HaloActor(LineActor):
         self._choices = Choices()
         self._subject = self._subject_of(self._held, mapper)
         super().__init__(mapper, held.scalars, given, name=name, theme=theme)
-        self._own_color = self._settings.color is not None
-        self._settings.color = pv.Color(self._settings.color, default_color=self._ink)
         self._colour_halos()
         self._recolour()
         self.opacity = given["opacity"]
@@ -88,22 +90,19 @@ class HaloActor(LineActor):
 
     # Colours ------------------------------------------------------------------------------------
 
-    def _read_color(self) -> pv.Color:
-        return pv.Color(self._settings.color)
+    @property
+    def _default_color(self) -> str | None:
+        return _INKS[self._light_on_dark]
 
-    def _write_color(self, color: Any) -> None:
-        checked = pv.Color(color, default_color=self._ink)
-        self._own_color = color is not None
-        self._settings.color = checked
-        self.scalars = None
+    def _read_color(self) -> pv.Color:
+        return self._solid_color()
 
     def _kept_color(self) -> Any:
-        return self._settings.color if self._own_color else None
+        return self._settings.color
 
     def _read_halo_color(self) -> pv.Color | str:
-        if self._halo_choice == BACKGROUND:
-            return BACKGROUND
-        return pv.Color(self._halo_choice, default_color=self._paper)
+        choice = _PAPERS[self._light_on_dark] if self._halo_choice is None else self._halo_choice
+        return BACKGROUND if choice == BACKGROUND else pv.Color(choice)
 
     def _write_halo_color(self, color: Any) -> None:
         self._halo_choice = _halo_choice(color)
@@ -112,13 +111,11 @@ class HaloActor(LineActor):
     def _kept_halo_color(self) -> Any:
         return self._halo_choice
 
-    def _read_light_on_dark(self) -> bool:
+    def _read_light_on_dark(self) -> bool | None:
         return self._light_on_dark
 
-    def _write_light_on_dark(self, wanted: bool) -> None:
+    def _write_light_on_dark(self, wanted: bool | None) -> None:
         self._light_on_dark = wanted
-        if not self._own_color:
-            self._settings.color = pv.Color(self._ink)
         self._colour_halos()
         self._show(self._scalars)
 
@@ -195,14 +192,6 @@ class HaloActor(LineActor):
         }
 
     # Inside -------------------------------------------------------------------------------------
-
-    @property
-    def _ink(self) -> str:
-        return "white" if self._light_on_dark else "black"
-
-    @property
-    def _paper(self) -> str:
-        return "black" if self._light_on_dark else "white"
 
     @property
     def _drawn(self) -> Held:

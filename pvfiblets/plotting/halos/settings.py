@@ -82,29 +82,31 @@ class HaloSettings(Settings):
     )
     color: Setting[Any] = Setting(
         None,
-        "One colour for all; by default black, or white with ``light_on_dark``.\n\n"
-        "Setting it switches scalars off; ``None`` sets the default.",
-        argument="One colour for all, black by default. ``scalars`` override it.",
+        "One colour for all; by default black on a light background and white on a dark one.\n\n"
+        "Setting it switches scalars off; ``None`` sets the default, see ``light_on_dark``.",
+        argument="One colour for all; by default black on a light background and white on a dark one. ``scalars`` "
+        "override it.",
         kind=shared.COLOR_LIKE,
         header="color-like, optional",
         where=OWN,
     )
     halo_color: Setting[Any] = Setting(
         None,
-        "Colour of the halos; by default white, or black with ``light_on_dark``.\n\n"
+        "Colour of the halos; by default the background's.\n\n"
         '``"background"``: that of the renderer, be it a gradient from below to above. ``None`` sets\n'
-        "the default.",
+        "the default, see ``light_on_dark``.",
         kind=shared.COLOR_LIKE,
         header='color-like or "background", optional',
         where=OWN,
     )
-    light_on_dark: Setting[bool] = Setting(
-        False,
-        "White in black halos instead of black in white ones; explicit colours stay.\n\n"
-        'The background is the plotter\'s: ``plotter.set_background("black")``.',
-        kind="bool",
+    light_on_dark: Setting[bool | None] = Setting(
+        None,
+        "``True``: white in black halos; ``False``: black in white ones; explicit colours stay.\n\n"
+        "``None``: black on a light background and white on a dark one, in halos of the background's\n"
+        "colour, whenever the background changes.",
+        kind="bool | None",
         where=OWN,
-        check=truth,
+        check=lambda name, value: None if value is None else truth(name, value),
     )
     cmap = shared.CMAP
     clim = shared.CLIM

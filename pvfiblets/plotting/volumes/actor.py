@@ -402,7 +402,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
         if casting.layered:
             return casting, None
         solid = mode == SURFACE and settings.color is not None
-        return casting, make_colouring(settings, None if solid else self._scalars, self._table, self._theme)
+        return casting, make_colouring(settings, None if solid else self._scalars, self._table, self._theme.color)
 
     def _transfer(self, alpha: np.ndarray) -> Transfer:
         """Return the table as a transfer function, the one that there is if it says the same."""
