@@ -2,7 +2,8 @@
 
 ``clusters(fiblets)`` puts streamlines that run alike together, ``similar(fiblets, ids)`` finds more like some, and
 ``recognise(fiblets, folder)`` finds the bundles of models. ``fiblets.bundles`` is the editable list of a set's groups.
-``tract_profile`` averages values along a bundle, ``bundle_table`` measures all of them.
+``tract_profile`` averages values along a bundle, ``values_along`` gives its points the values of their positions, and
+``bundle_table`` measures all bundles.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING
 from .support.lazy_imports import names_from
 
 if TYPE_CHECKING:
+    from .query.bundles.along import values_along
     from .query.bundles.bundle_list import Bundle, Bundles
     from .query.bundles.clusters import Cluster, Clusters, clusters
     from .query.bundles.recognise import recognise
@@ -35,6 +37,7 @@ __all__ = [
     "recognise",
     "similar",
     "tract_profile",
+    "values_along",
 ]
 
 _HOME = {
@@ -53,6 +56,7 @@ _HOME = {
     "recognise": ".query.bundles.recognise",
     "similar": ".query.bundles.similar",
     "tract_profile": ".query.bundles.tract_profile",
+    "values_along": ".query.bundles.along",
 }
 
 __getattr__, __dir__ = names_from(__name__, _HOME)

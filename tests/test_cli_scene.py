@@ -11,6 +11,7 @@ from PIL import Image
 
 from pvfiblets import Streamlines, formats, regions
 from pvfiblets.cli.command import main
+from pvfiblets.cli.pictures import UPRIGHT
 from pvfiblets.cli.scene import value_of
 from pvfiblets.plotting.cut_surfaces import cut_surface
 from pvfiblets.plotting.viewpoints import point_camera
@@ -174,6 +175,21 @@ def test_filters(shot, files, middle):
         assert found.sum() > 0
         # The camera looks at all that is visible.
         assert_same(found, drawn(lambda p, change=change: change(lines(files)(p))), whole)
+
+
+def test_lines_are_coloured_along_their_bundle(shot, files, tmp_path):
+    table = tmp_path / "profile.csv"
+    table.write_text("position,mean,p\n0,1,0.5\n0.5,,0.1\n1,3,0.01\n")
+
+    def by(profile, **more):
+        bar = {"color": "white", **UPRIGHT}
+        return drawn(lambda p: lines(files)(p, scalar_bar_args=bar).color_along(profile, **more))
+
+    whole = shot("lines.tck")
+    assert_same(shot("lines.tck", "--color-along", table), by([1.0, np.nan, 3.0]), whole)
+    assert_same(shot("lines.tck", "--color-along", table, "column=p"), by(table, column="p"), whole)
+    image = files / "image.nii.gz"
+    assert_same(shot("lines.tck", "--color-along", image, "n=7"), by(image, n=7), whole)
 
 
 @pytest.mark.parametrize("name", ["lines.tck", "ball.vtp"])

@@ -30,8 +30,8 @@ VTK = (".vtk", ".vtp")
 LINE_CELLS = (3, 4)  # VTK_LINE, VTK_POLY_LINE
 
 # Where a scalar bar covers nothing of a brain.
-NOTHING: dict[str, Any] = {"clip": [], "clip_away": [], "include": [], "exclude": [], "criterion": [], "groups": None,
-                           "subset": None}  # fmt: skip
+NOTHING: dict[str, Any] = {"color_along": [], "clip": [], "clip_away": [], "include": [], "exclude": [],
+                           "criterion": [], "groups": None, "subset": None}  # fmt: skip
 UPRIGHT = {"vertical": True, "height": 0.5, "position_x": 0.9, "position_y": 0.25}
 
 

@@ -35,6 +35,12 @@ def add_options(parser: Any) -> None:
             **words,
         )  # fmt: skip
     parser.add_argument(
+        "--color-along", metavar="WORD",
+        help="colour lines by a value for each position along their bundle: a table (.csv, .tsv, .npy) as `pvfiblets "
+             "profile` writes, or an array or image whose profile is computed; then column=NAME ids=GROUP n=N",
+        **words,
+    )  # fmt: skip
+    parser.add_argument(
         "--clip", metavar="WORD",
         help="keep the inside of a plane normal=X,Y,Z origin=X,Y,Z (the side that the normal points to), slab "
              "normal=X,Y,Z "
@@ -111,10 +117,12 @@ def cut_and_filter(actors: Mapping[str, Sequence[Any]], wishes: Wishes) -> None:
             for kind in _kinds(rest.get("of"), option):
                 for actor in actors[kind]:
                     _cut(actor, region, inside)
-    filters = {name: wishes[name] for name in ("include", "exclude", "criterion", "groups", "subset")}
-    if not lines and (named := [name for name, said in filters.items() if said]):
+    filters = {name: wishes[name] for name in ("color_along", "include", "exclude", "criterion", "groups", "subset")}
+    if not lines and (named := [name.replace("_", "-") for name, said in filters.items() if said]):
         raise ValueError(f"--{named[0]} is about streamlines, and no FILE has any")
     for actor in lines:
+        for words in filters["color_along"]:
+            actor.color_along(words[0], **options_of([words[1:]], "--color-along"))
         for name in ("include", "exclude"):
             for words in filters[name]:
                 getattr(actor, name)(_condition(words, f"--{name}", load()))

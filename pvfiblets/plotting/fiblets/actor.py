@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
+from pvfiblets.codec.point_arrays import with_point_values as add_values
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.depth_peeling import Layers
 from pvfiblets.mappers.engine_options import EngineOptions
@@ -270,6 +271,61 @@ class FibletActor(FibletSettings, SelectableActor):
         if fiblets is not self._fiblets:
             self._draw(fiblets)
         self._colour_by(scalars, found)
+
+    def color_along(
+        self, profile: Any, n: int = 100, *, ids: Any = None, column: str = "mean", orient_by: Any = None
+    ) -> Any:
+        """Colour each streamline by a value for each position along its bundle.
+
+        Positions are those of :func:`pvfiblets.bundles.tract_profile`: streamlines are turned to run one way, and
+        divided into parts of equal length. Points without a value have ``nan_color``.
+
+        Parameters
+        ----------
+        profile : TractProfile, Profile, str, path, array_like or image
+            Numbers at positions from one end of the bundle to the other, such as means, p-values or effect sizes; the
+            path of a table that has them (``.csv``, ``.tsv``, ``.txt``, ``.npy``); or the name of an array, or an
+            image, whose profile is computed.
+        n : int, default: 100
+            Positions of a profile that is computed.
+        ids : array_like, slice, Bundle or str, optional
+            The bundle's streamlines, or the name of a group, whose rows are read of a table that has a column
+            ``bundle``; all streamlines by default. Others have no value.
+        column : str, default: "mean"
+            Column of a table.
+        orient_by : array_like, optional
+            ``(m, 3)`` mm: a line that all streamlines are turned to run along; by default the core of a
+            ``TractProfile``, or the first of the bundle.
+
+        Returns
+        -------
+        TractProfile, Profile or numpy.ndarray
+            The profile whose values are shown, for a plot beside the bundle; of a table, ``(n,)`` numbers.
+
+        Raises
+        ------
+        KeyError
+            If there is no such array, group or column.
+        ValueError
+            If the values are not one number for each position.
+
+        Examples
+        --------
+        >>> import pyvista as pv
+        >>> from pvfiblets.synthetic import brain_streamlines
+        >>> pl = pv.Plotter(off_screen=True)
+        >>> actor = pl.add_fiblets(brain_streamlines(100))
+        >>> _ = actor.color_along([0.2, 0.5, 0.4, float("nan")], ids=slice(0, 10))
+        """
+        from pvfiblets.plotting.fiblets.along import along_bundle
+
+        bundle = slice(None) if ids is None else ids
+        shown, name, values = along_bundle(self._fiblets, profile, n, bundle, column, orient_by)
+        fiblets = add_values(self._fiblets, name, values, bits=16)
+        found = self._find(fiblets, name)
+        self._draw(fiblets)
+        self._colour_by(name, found)
+        return shown
 
     def _as_polydata(self) -> pv.PolyData:
         return self._fiblets.decompress().to_polydata()

@@ -151,11 +151,8 @@ def tract_profile(
     if weights not in get_args(Weights):
         raise ValueError(f"weights is {weights!r}; give one of {', '.join(map(repr, get_args(Weights)))}")
     student_quantile(confidence, 1)
-    if isinstance(ids, str):
-        if ids not in data.groups:
-            raise KeyError(f"there is no group {ids!r}; there are: {', '.join(map(repr, data.groups)) or 'none'}")
-        bundle, ids = bundle or ids, data.groups[ids]
-    chosen = select_streamlines(len(data), getattr(ids, "ids", ids))
+    bundle = ids if isinstance(ids, str) and not bundle else bundle
+    chosen = select_streamlines(len(data), bundle_lines(data, ids))
     if len(chosen) * n > MOST:
         raise ValueError(f"{len(chosen):,} streamlines at {n} places take too much memory; give fewer of either")
     image = as_image(values) if is_image(values) else None
@@ -164,10 +161,8 @@ def tract_profile(
         raise ValueError("there is no streamline with points to average")
     if image is not None:
         found = image.at(places.reshape(-1, 3), nearest=image.is_labels).reshape(len(places), n)
-    like = places[0] if orient_by is None else _line(orient_by, n)
-    turn = np.linalg.norm(places[:, ::-1] - like, axis=2).mean(axis=1) < np.linalg.norm(places - like, axis=2).mean(
-        axis=1
-    )
+    like = places[0] if orient_by is None else as_line(orient_by, n)
+    turn = runs_backwards(places, like)
     places[turn], found[turn] = places[turn, ::-1], found[turn, ::-1]
     weight = core_weights(places) if weights == "core" else np.full(found.shape, 1.0 / len(found))
     mean, std, low, high = _banded(found, weight, confidence)
@@ -276,14 +271,31 @@ def _banded(rows: Floats, weight: Floats, confidence: float) -> tuple[Floats, Fl
     return mean, std, mean - half, mean + half
 
 
-def _line(given: npt.ArrayLike, n: int) -> Floats:
+def bundle_lines(data: FibletSet | Streamlines, ids: Any) -> Any:
+    """Return the streamlines of a bundle, a group's by its name, as `select_streamlines` takes them."""
+    if not isinstance(ids, str):
+        return getattr(ids, "ids", ids)
+    if ids not in data.groups:
+        raise KeyError(f"there is no group {ids!r}; there are: {', '.join(map(repr, data.groups)) or 'none'}")
+    return data.groups[ids]
+
+
+def runs_backwards(places: Floats, like: Floats) -> npt.NDArray[np.bool_]:
+    """Return which streamlines run against a line, by the mean distance of their places from its places."""
+    direct, flipped = (np.linalg.norm(one - like, axis=2).mean(axis=1) for one in (places, places[:, ::-1]))
+    return np.asarray(flipped < direct)
+
+
+def as_line(given: npt.ArrayLike, n: int) -> Floats:
+    """Resample a user's line to places of equal arc length."""
     line = np.asarray(given, np.float64)
     if line.ndim != 2 or line.shape[1] != 3 or not len(line) or not np.isfinite(line).all():
         raise ValueError(f"orient_by has the shape {line.shape}; give a line as (m, 3) finite numbers of mm")
-    return _resampled(line, np.zeros(len(line)), np.array([0, len(line)]), n)[0][0]
+    return resampled_lines(line, np.zeros(len(line)), np.array([0, len(line)]), n)[0][0]
 
 
-def _resampled(points: Any, values: Any, offsets: Any, n: int) -> tuple[Floats, Floats]:
+def resampled_lines(points: Any, values: Any, offsets: Any, n: int) -> tuple[Floats, Floats]:
+    """Return positions, ``(m, n, 3)``, and values, ``(m, n)``, at places of equal arc length."""
     from ..measures.measure_kernels import resample
 
     m = len(offsets) - 1
@@ -322,7 +334,7 @@ def _along(data: FibletSet | Streamlines, chosen: Any, values: Any, n: int) -> t
     counts = np.asarray(part.counts)
     keep = counts > 0
     offsets = np.concatenate([[0], np.cumsum(counts[keep])])
-    return _resampled(part.points, numbers, offsets, n)
+    return resampled_lines(part.points, numbers, offsets, n)
 
 
 def _rows(data: Any, chosen: Any, values: Any) -> Any:

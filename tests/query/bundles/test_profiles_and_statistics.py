@@ -204,3 +204,46 @@ def test_profiles_come_as_one_table(lines, image):
     assert table["bundle"].tolist() == ["b0"] * 10 + ["b5"] * 10
     assert np.array_equal(table["mean"][10:], some[1].mean)
     assert isinstance(compress(made), FibletSet)
+
+
+def test_values_along_a_bundle_are_at_dipys_positions(lines):
+    """In float64 by NumPy, of streamlines that dipy has turned, and the profile of these values is the profile."""
+    from dipy.tracking.streamline import orient_by_streamline
+
+    profile = np.cos(np.linspace(0.0, 5.0, 40))
+    streamlines = Streamlines.from_list(lines)
+    found = bundles.values_along(streamlines, slice(None), profile)
+    turned = orient_by_streamline(lines, lines[0], n_points=40)
+    wanted = []
+    for line, theirs in zip(lines, turned, strict=True):
+        steps = np.linalg.norm(np.diff(theirs, axis=0), axis=1)
+        share = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+        values = np.interp(share, np.linspace(0.0, 1.0, 40), profile)
+        wanted.append(values if np.allclose(theirs[0], line[0], atol=1e-4) else values[::-1])
+    assert np.allclose(found, np.concatenate(wanted), atol=1e-5)
+    fine = Streamlines.from_list([np.array([np.interp(np.linspace(0, 1, 2000), np.linspace(0, 1, len(line)), axis)
+                                            for axis in line.T]).T for line in lines])  # fmt: skip
+    again = bundles.tract_profile(fine, slice(None), bundles.values_along(fine, slice(None), profile), 40)
+    assert np.allclose(again.mean, profile, atol=1e-3)
+    assert np.isnan(again.std).sum() == 0
+    against = bundles.values_along(streamlines, slice(None), profile, orient_by=lines[0][::-1])
+    assert np.allclose(against, bundles.values_along(streamlines, slice(None), profile[::-1]))
+
+
+def test_positions_without_a_value_and_other_streamlines_have_none(lines):
+    streamlines = Streamlines.from_list([np.zeros((0, 3)), *lines], groups={"two": np.array([1, 2])})
+    profile = np.array([1.0, 2.0, np.nan, 4.0, 5.0])
+    for data in (streamlines, compress(streamlines, exact=True)):
+        found = bundles.values_along(data, "two", profile)
+        first, second = (found[streamlines.offsets[k] : streamlines.offsets[k + 1]] for k in (1, 2))
+        assert np.isnan(found[streamlines.offsets[3] :]).all()
+        steps = np.linalg.norm(np.diff(lines[0], axis=0), axis=1)
+        share = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+        assert np.isnan(first).tolist() == (np.abs(share - 0.5) < 0.125).tolist()
+        assert (first[0], first[-1], second[0], second[-1]) == pytest.approx((1.0, 5.0, 5.0, 1.0))
+    with pytest.raises(ValueError, match="shape"):
+        bundles.values_along(streamlines, "two", np.zeros((2, 2)))
+    with pytest.raises(KeyError, match="'one'"):
+        bundles.values_along(streamlines, "one", profile)
+    with pytest.raises(ValueError, match="2 or more"):
+        bundles.values_along(streamlines, "two", [1.0])

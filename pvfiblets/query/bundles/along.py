@@ -1,0 +1,132 @@
+"""Values of positions along a bundle at the points of its streamlines: the inverse of a tract profile."""
+
+from __future__ import annotations
+
+import csv
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...codec.decompress import select_streamlines
+from ...formats.attachments import read_values
+from ...streamlines import Streamlines
+from ...support.ragged import blocks
+from ..measures.chunks import without_groups
+from .resampled import check_count
+from .tract_profile import as_line, bundle_lines, resampled_lines, runs_backwards
+
+if TYPE_CHECKING:
+    from ...codec.fibletset import FibletSet
+
+__all__ = ["TABLES", "profile_values", "values_along"]
+
+Floats = npt.NDArray[np.float64]
+TABLES = (".csv", ".tsv", ".txt", ".npy")
+CHUNK = 1 << 20  # points decoded, or places resampled, together
+
+
+def values_along(
+    data: FibletSet | Streamlines, ids: Any, values: npt.ArrayLike, *, orient_by: npt.ArrayLike | None = None
+) -> Floats:
+    """Give each point of a bundle the value of its position along the bundle.
+
+    Parameters
+    ----------
+    data : FibletSet or Streamlines
+    ids : array_like, slice, Bundle, Cluster or str
+        The bundle's streamlines, or the name of a group.
+    values : array_like
+        ``(n,)`` numbers at positions of equal arc length from the begin of the bundle to its end, as
+        :func:`tract_profile` has them. NaN for none.
+    orient_by : array_like, optional
+        ``(m, 3)`` mm: a line that all streamlines are turned to run along; by default the first of the bundle.
+
+    Returns
+    -------
+    numpy.ndarray
+        ``(n_points,)`` float64: linear between positions. A point whose nearest position has no value is NaN, and so
+        are points of other streamlines.
+
+    Raises
+    ------
+    KeyError
+        If there is no such group.
+    ValueError
+        If the values are not at least two numbers.
+    """
+    numbers = np.asarray(values, np.float64)
+    if numbers.ndim != 1:
+        raise ValueError(f"values along a bundle have the shape {numbers.shape}; give one number for each position")
+    n = check_count(len(numbers))
+    chosen = select_streamlines(len(data), bundle_lines(data, ids))
+    offsets = np.asarray(data.offsets if isinstance(data, Streamlines) else data.offsets())
+    counts = np.diff(offsets)
+    chosen = chosen[counts[chosen] > 0]
+    found = np.full(int(offsets[-1]), np.nan)
+    bare = without_groups(data)
+    like = None if orient_by is None else as_line(orient_by, n)
+    for a, b in blocks(np.concatenate([[0], np.cumsum(np.maximum(counts[chosen], n))]), CHUNK):
+        some = chosen[a:b]
+        part: Any = bare[some] if isinstance(bare, Streamlines) else bare.decompress(some, dtype=np.float64)
+        places = resampled_lines(part.points, np.zeros(part.n_points), part.offsets, n)[0]
+        like = places[0] if like is None else like
+        shares = _shares(np.asarray(part.points, np.float64), np.asarray(part.offsets))
+        backwards = np.repeat(runs_backwards(places, like), np.diff(part.offsets))
+        rows = np.repeat(offsets[some] - part.offsets[:-1], counts[some]) + np.arange(part.n_points)
+        found[rows] = _between(numbers, np.where(backwards, 1.0 - shares, shares))
+    return found
+
+
+def profile_values(path: str | os.PathLike[str], column: str = "mean", bundle: str | None = None) -> Floats:
+    """Read the numbers of one bundle's positions from a table, or from a file of one number per row."""
+    where = Path(path).expanduser()
+    if where.suffix.lower() == ".npy":
+        return read_values(where).astype(np.float64)
+    with where.open(newline="") as file:
+        rows = [row for row in csv.reader(file, delimiter="\t" if where.suffix.lower() == ".tsv" else ",") if row]
+    if not rows or all(_is_number(cell) for cell in rows[0]):
+        return read_values(where).astype(np.float64)
+    names, rows = rows[0], rows[1:]
+    if column not in names:
+        raise KeyError(f"{where} has no column {column!r}; it has: {', '.join(names)}")
+    if "bundle" in names:
+        at = names.index("bundle")
+        known = list(dict.fromkeys(row[at] for row in rows))
+        if bundle not in known and len(known) > 1:
+            raise ValueError(f"{where} has profiles of {', '.join(known)}; give the name of one of these groups as ids")
+        rows = [row for row in rows if bundle not in known or row[at] == bundle]
+    at = names.index(column)
+    return np.array([float(row[at] or "nan") for row in rows])
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text or "nan")
+    except ValueError:
+        return all(_is_number(word) for word in text.split()) if len(text.split()) > 1 else False
+    return True
+
+
+def _shares(points: Floats, offsets: npt.NDArray[np.int64]) -> Floats:
+    """Return the arc length up to each point as a share of its streamline's; 0 where that has no length."""
+    steps = np.zeros(len(points))
+    steps[1:] = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    steps[offsets[:-1]] = 0.0
+    sums = np.cumsum(steps)
+    counts = np.diff(offsets)
+    along = sums - np.repeat(sums[offsets[:-1]], counts)
+    length = np.repeat(along[offsets[1:] - 1], counts)
+    return np.divide(along, length, out=np.zeros(len(points)), where=length > 0.0)
+
+
+def _between(values: Floats, shares: Floats) -> Floats:
+    """Interpolate between positions; without a value on one side, take the nearest position."""
+    at = np.clip(shares, 0.0, 1.0) * (len(values) - 1)
+    low = np.minimum(at.astype(np.int64), len(values) - 2)
+    t = at - low
+    first, second = values[low], values[low + 1]
+    mixed = first * (1.0 - t) + second * t
+    return np.where(np.isnan(first) | np.isnan(second), np.where(t < 0.5, first, second), mixed)
