@@ -77,7 +77,7 @@ def along(tangents: Array, light: Array) -> Array:
 
 def floored(light: Array) -> Callable[[Array], Array]:
     """Illuminated lines with a floor, of one light."""
-    return lambda tangents: 0.6 + 0.4 * (1.0 - (tangents @ light) ** 4)
+    return lambda tangents: 0.8 + 0.2 * (1.0 - (tangents @ light) ** 4)
 
 
 LIGHTS: dict[str, Callable[[Array], Array]] = {

@@ -41,7 +41,7 @@ vec3 light_on_line(vec3 own, vec3 tangent, vec3 place, bool illuminated, vec4 re
         tint = mix(vec3(1.0), tint, 1.0 - min(tint.r, min(tint.g, tint.b)));
         vec3 share = min(diffuse / max(light_sum, vec3(1e-6)), vec3(1.0));
         share = mix(vec3(across_line(tangent, vec3(-0.57735027, 0.57735027, 0.57735027))), share, light_standing);
-        on = min(brightest, 1.0) * tint * mix(vec3(0.6), vec3(1.0), share);
+        on = min(brightest, 1.0) * tint * mix(vec3(0.8), vec3(1.0), share);
     }
     return reflects.x * own + reflects.y * on * own + reflects.z * sheen * shine;
 }

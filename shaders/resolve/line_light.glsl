@@ -20,7 +20,7 @@
 //@ fragment after //VTK::CustomUniforms::Dec
 uniform vec3 fibletLights;         // c'
 uniform float fibletStanding;      // 1: a light stands in the scene
-const float fibletFloor = 0.6;
+const float fibletFloor = 0.8;
 vec3 fibletLineTangent;            // T, in view coordinates
 vec3 fibletLineNormal;             // nearest to the viewer
 

@@ -119,7 +119,8 @@ def test_specular_highlights_need_the_position(rod):
 @pytest.mark.parametrize("effect", [None, LineLight(), Illuminated()])
 def test_highlights_come_and_go_with_the_property(make_plotter, make_fibres, tools, effect):
     def drawn(*values):
-        mapper, actor = make_fibres(tools.helices(5, 40)).actor(lighting=True, colouring=Colouring("solid"))
+        grey = Colouring("solid", color=(0.6, 0.6, 0.6))
+        mapper, actor = make_fibres(tools.helices(5, 40)).actor(lighting=True, colouring=grey)
         if effect is not None:
             mapper.set_effect("light", effect)
         plotter = make_plotter(lighting="light kit")
@@ -207,7 +208,7 @@ def test_more_light_than_white_is_dimmed_alike(rod):
 
 
 def share(direction, towards):
-    return 0.6 + 0.4 * (1.0 - (unit(*direction) @ towards) ** 4)
+    return 0.8 + 0.2 * (1.0 - (unit(*direction) @ towards) ** 4)
 
 
 @pytest.mark.parametrize("direction", [*RODS, (0.3, -0.8, 0.5)])
@@ -222,11 +223,11 @@ def test_the_cameras_lights_come_over_the_shoulder_and_legends_keep_their_colour
         assert (rod(direction, *lights, effect=LineLight(), light={"Specular": 0.5}) > seen + 5)[1:].all()
 
 
-def test_no_direction_loses_more_than_two_fifths(rod):
+def test_no_direction_loses_more_than_a_fifth(rod):
     """The direction of the light itself has the least: the floor. Lines along the view axis keep what others do."""
-    assert np.allclose(rod(SHOULDER @ TO_VIEW, headlight(), effect=LineLight()), 0.6 * COLOUR, atol=2)
+    assert np.allclose(rod(SHOULDER @ TO_VIEW, headlight(), effect=LineLight()), 0.8 * COLOUR, atol=2)
     axes = [share(axis, SHOULDER @ TO_VIEW) for axis in np.eye(3)]
-    np.testing.assert_allclose(axes, 1.0 - 0.4 / 9)
+    np.testing.assert_allclose(axes, 1.0 - 0.2 / 9)
 
 
 @pytest.mark.parametrize("direction", RODS)

@@ -30,7 +30,7 @@ def brain():
 @pytest.mark.parametrize("camera", ["xy", "xz", "yz", "iso"])
 @pytest.mark.parametrize("lights", ["light kit", "three lights", "headlight"])
 def test_direction_colours_are_true_from_every_side(brain, camera, lights):
-    """Lit beside unlit: most pixels keep nearly all of their brightness, none less than three fifths."""
+    """Lit beside unlit: most pixels keep nearly all of their brightness, none less than four fifths."""
     shown = {}
     for lighting in (True, False):
         kind = "none" if lights == "headlight" else lights
@@ -46,12 +46,31 @@ def test_direction_colours_are_true_from_every_side(brain, camera, lights):
     drawn = shown[False].any(axis=-1)
     ratio = (shown[True].sum(-1) / np.maximum(shown[False].sum(-1), 1))[drawn]
     assert np.median(ratio) >= 0.95
-    assert ratio.min() >= 0.59  # of 255 levels
+    assert ratio.min() >= 0.79  # of 255 levels
     assert ratio.max() <= 1.01
-    assert ratio.std() > 0.05  # and shape is left
+    assert ratio.std() > 0.025  # and shape is left
     dim = shown[True][drawn] / shown[True][drawn].max(-1, keepdims=True)
     true = shown[False][drawn] / shown[False][drawn].max(-1, keepdims=True)
     assert np.abs(dim - true).max() < 0.02  # no channel loses more than another
+
+
+@pytest.mark.parametrize("name", ["nv_stroke.trk.gz", "dipy_tracks300.trk"])
+def test_real_bundles_keep_their_brightness_from_every_side(shared_data, name):
+    from pvfiblets import compress, read
+
+    fiblets = compress(read(shared_data / name))
+    for camera in ("xy", "xz", "yz"):
+        shown = {}
+        for lighting in (True, False):
+            plotter = pv.Plotter(off_screen=True, window_size=(320, 240))
+            plotter.set_background("black")
+            plotter.disable_anti_aliasing()
+            plotter.add_fiblets(fiblets, lighting=lighting)
+            plotter.camera_position = camera
+            shown[lighting] = picture(plotter).sum(axis=-1)
+            plotter.close()
+        drawn = shown[False] > 0
+        assert np.median(shown[True][drawn] / shown[False][drawn]) >= 0.95
 
 
 @pytest.mark.few(2)

@@ -195,7 +195,7 @@ class FibletSettings(Settings):
                 matters=lambda s: s["line_width"] > 1.0 and s["tube_radius"] is None),
     )  # fmt: skip
     lighting = shared.lighting(
-        "Shade the lines by the scene's lights; the theme's by default. Light keeps at least 0.6 of every colour; "
+        "Shade the lines by the scene's lights; the theme's by default. Light keeps at least 0.8 of every colour; "
         "colours of a scalar bar stay unchanged and match the bar.",
         None,
     )

@@ -12,7 +12,7 @@
 
 #if FEATURE_PAINT_LIGHT
 uniform vec3 paint_light;          // unit vector to the light, data coordinates
-const float PAINT_FLOOR = 0.6;
+const float PAINT_FLOOR = 0.8;
 
 // As resolve/line_light.glsl dims the nearest line.
 vec3 lit(vec3 c, vec3 tangent) {
