@@ -62,26 +62,28 @@ def test_all_that_holds_a_profile_is_taken(plotter, tmp_path):
         found = actor.fiblets.decompress().per_point[actor.scalars]
         assert np.allclose(found, wanted, atol=1e-3, equal_nan=True)
     actor.color_along(tmp_path / "many.tsv", ids="pair", column="p")
-    assert (actor.scalars, actor.clim) == ("p", pytest.approx((0.1, 0.3), abs=1e-4))
+    assert (actor.scalars, actor.clim) == ("p profile", pytest.approx((0.1, 0.3), abs=1e-4))
     with pytest.raises(ValueError, match="profiles of pair, other"):
         actor.color_along(tmp_path / "many.tsv")
     with pytest.raises(KeyError, match="no column 'fa'"):
         actor.color_along(tmp_path / "many.tsv", ids="pair", column="fa")
-    assert actor.scalars == "p"
+    assert actor.scalars == "p profile"
 
 
-def test_a_profile_is_computed_and_knows_its_direction(plotter):
+def test_a_profile_is_computed_and_knows_its_direction(plotter, tmp_path):
     streamlines = bundle()
     streamlines.per_point["x"] = np.asarray(streamlines.points)[:, 0].copy()
     actor = plotter.add_fiblets(streamlines, scalars="x", **LOOKS)
     profile = actor.color_along("x", 31, ids="pair")
     assert np.allclose(profile.mean, np.linspace(-15, 15, 31), atol=0.2)
     assert actor.scalars_title == "x profile"
-    actor.color_along(profile, ids=[1])  # which runs the other way, but for its core
-    found = actor.fiblets.decompress()
-    held = slice(*found.offsets[1:3])
-    assert np.allclose(found.per_point[actor.scalars][held], found.points[held, 0], atol=0.2)
-    assert np.isnan(found.per_point[actor.scalars][: found.offsets[1]]).all()
+    profile.table().save(tmp_path / "x.tsv")
+    for held in (profile, tmp_path / "x.tsv"):
+        actor.color_along(held, ids=[1])  # which runs the other way, but for its core
+        found = actor.fiblets.decompress()
+        line = slice(*found.offsets[1:3])
+        assert np.allclose(found.per_point[actor.scalars][line], found.points[line, 0], atol=0.2)
+        assert np.isnan(found.per_point[actor.scalars][: found.offsets[1]]).all()
 
 
 def test_a_real_bundle_shows_its_own_profile(shared_data):

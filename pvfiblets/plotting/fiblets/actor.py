@@ -295,7 +295,7 @@ class FibletActor(FibletSettings, SelectableActor):
             Column of a table.
         orient_by : array_like, optional
             ``(m, 3)`` mm: a line that all streamlines are turned to run along; by default the core of a
-            ``TractProfile``, or the first of the bundle.
+            ``TractProfile``, the columns ``x``, ``y`` and ``z`` of a table, or the first of the bundle.
 
         Returns
         -------

@@ -10,7 +10,7 @@ import numpy as np
 
 from pvfiblets.formats.attachments import name_of
 from pvfiblets.images.sources import is_image
-from pvfiblets.query.bundles.along import TABLES, profile_values, values_along
+from pvfiblets.query.bundles.along import TABLES, read_profile, values_along
 from pvfiblets.query.bundles.tract_profile import tract_profile
 
 if TYPE_CHECKING:
@@ -21,18 +21,20 @@ def along_bundle(
     fiblets: FibletSet, profile: Any, n: int, ids: Any, column: str, orient_by: Any
 ) -> tuple[Any, str, np.ndarray]:
     """Return a profile or its numbers, the name of an array of its values, and these, one per point."""
-    shown, said = profile, "profile"
+    shown, said, core = profile, "", None
     if isinstance(profile, (str, os.PathLike)) and os.fspath(profile).lower().endswith(TABLES):
-        shown = profile_values(profile, column, ids if isinstance(ids, str) else None)
+        shown, core = read_profile(profile, column, ids if isinstance(ids, str) else None)
         said = name_of(profile) if column == "mean" else column
     elif isinstance(profile, str) or is_image(profile):
         name = Path(profile).name if isinstance(profile, (str, os.PathLike)) else ""
         shown = tract_profile(fiblets, ids, profile, n, orient_by=orient_by, name=name)
     if hasattr(shown, "mean") and hasattr(shown, "position"):
         core = getattr(shown, "core", None)
-        if orient_by is None and core is not None and np.isfinite(core).all():
-            orient_by = core
-        numbers, said = shown.mean, f"{shown.name or 'value'} profile"
+        core = core if core is not None and np.isfinite(core).all() else None
+        numbers, said = shown.mean, shown.name
     else:
         numbers = shown = np.asarray(shown, np.float64)
-    return shown, said, values_along(fiblets, ids, numbers, orient_by=orient_by)
+    like = core if orient_by is None else orient_by
+    # A name of its own: the set may hold the array that was averaged.
+    name = said if "profile" in said.lower() else f"{said} profile".strip()
+    return shown, name, values_along(fiblets, ids, numbers, orient_by=like)

@@ -21,7 +21,7 @@ from .tract_profile import as_line, bundle_lines, resampled_lines, runs_backward
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["TABLES", "profile_values", "values_along"]
+__all__ = ["TABLES", "read_profile", "values_along"]
 
 Floats = npt.NDArray[np.float64]
 TABLES = (".csv", ".tsv", ".txt", ".npy")
@@ -80,15 +80,17 @@ def values_along(
     return found
 
 
-def profile_values(path: str | os.PathLike[str], column: str = "mean", bundle: str | None = None) -> Floats:
-    """Read the numbers of one bundle's positions from a table, or from a file of one number per row."""
+def read_profile(
+    path: str | os.PathLike[str], column: str = "mean", bundle: str | None = None
+) -> tuple[Floats, Floats | None]:
+    """Read the numbers of a bundle's positions, and where these are, if a table says so."""
     where = Path(path).expanduser()
     if where.suffix.lower() == ".npy":
-        return read_values(where).astype(np.float64)
+        return read_values(where).astype(np.float64), None
     with where.open(newline="") as file:
         rows = [row for row in csv.reader(file, delimiter="\t" if where.suffix.lower() == ".tsv" else ",") if row]
     if not rows or all(_is_number(cell) for cell in rows[0]):
-        return read_values(where).astype(np.float64)
+        return read_values(where).astype(np.float64), None
     names, rows = rows[0], rows[1:]
     if column not in names:
         raise KeyError(f"{where} has no column {column!r}; it has: {', '.join(names)}")
@@ -98,8 +100,11 @@ def profile_values(path: str | os.PathLike[str], column: str = "mean", bundle: s
         if bundle not in known and len(known) > 1:
             raise ValueError(f"{where} has profiles of {', '.join(known)}; give the name of one of these groups as ids")
         rows = [row for row in rows if bundle not in known or row[at] == bundle]
-    at = names.index(column)
-    return np.array([float(row[at] or "nan") for row in rows])
+    values, *core = (
+        np.array([float(row[names.index(name)] or "nan") for row in rows])
+        for name in (column, *(axis for axis in "xyz" if axis in names))
+    )
+    return values, np.stack(core, axis=1) if len(core) == 3 and np.isfinite(core).all() else None
 
 
 def _is_number(text: str) -> bool:
