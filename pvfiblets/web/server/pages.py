@@ -68,8 +68,9 @@ def ask_token(wrong: bool) -> str:
     return page(
         "A token is needed",
         f"{hint}<p>When it starts, the server prints an address with the token, or the file that holds it. Open "
-        'that address, or enter the token here.</p><form method="post" action="/token"><input name="token" type="password" '
-        'autofocus autocomplete="off" aria-label="Token"><button>Open</button></form>',
+        'that address, or enter the token here.</p><form method="post" action="/token">'
+        '<input name="token" type="password" autofocus autocomplete="off" aria-label="Token">'
+        "<button>Open</button></form>",
     )
 
 
