@@ -14,6 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
 from PIL import Image, ImageChops
 
 HERE = Path(__file__).resolve().parent
@@ -22,6 +23,8 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "docs")]
 
 from pages import blocks, program  # noqa: E402 - the programs that the tests run
 
+import pvfiblets  # noqa: E402
+from pvfiblets.synthetic import brain_streamlines  # noqa: E402
 from tests.page.conftest import WEBGL  # noqa: E402 - the tests' way to open a page
 from tests.page.pages import Page  # noqa: E402
 from tests.web.browsing import FLAGS, launched  # noqa: E402
@@ -69,7 +72,25 @@ def scene(folder: Path) -> Image.Image:
     return picture.crop((left - MARGIN, top - MARGIN, right + MARGIN, bottom + MARGIN))
 
 
-PICTURES = {one.__name__: one for one in (shards, page, scene)}
+def cohort(folder: Path) -> Image.Image:
+    """FA along a bundle in synthetic subjects, whose FA differs in height and on a part of the bundle."""
+    random = np.random.default_rng(0)
+    for n in range(12):
+        brain = brain_streamlines(6_000, seed=n, fa=True)
+        bundle = brain[brain.groups["callosum"]]
+        dip = 1.0 - random.uniform(0.0, 0.3) * np.exp(-(((bundle.points[:, 0] - random.uniform(-25, 25)) / 12) ** 2))
+        bundle.per_point = {"fa": (bundle.per_point["fa"] * dip * random.uniform(0.9, 1.1)).astype(np.float32)}
+        target = folder / f"study/sub-{n + 1:02}/dwi/sub-{n + 1:02}_bundle-callosum.trk"
+        target.parent.mkdir(parents=True)
+        pvfiblets.write(target, bundle)
+    commands, text = (text for _, text in blocks(HERE / "clusters.md"))
+    (folder / "page.py").write_text(text, encoding="utf-8")
+    for words in (["-m", *shlex.split(commands.splitlines()[0])], ["page.py"]):
+        subprocess.run([sys.executable, *words], cwd=folder, check=True, env=ENVIRONMENT)
+    return Image.open(folder / "along.png")
+
+
+PICTURES = {one.__name__: one for one in (shards, page, scene, cohort)}
 
 
 def main() -> None:

@@ -14,20 +14,13 @@ import pyvista as pv
 
 from pvfiblets.synthetic import brain_streamlines
 
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+folder.mkdir(parents=True, exist_ok=True)
+brain = brain_streamlines(20_000)  # or the path of a .tck, .trk, .trx, .vtk, .vtp or .fiblets file
 
-def main(folder: Path) -> None:
-    """Draw the brain from the left; colour says which way fibres run."""
-    folder.mkdir(parents=True, exist_ok=True)
-    brain = brain_streamlines(20_000)  # or the path of a .tck, .trk, .trx, .vtk, .vtp or .fiblets file
-
-    plotter = pv.Plotter(off_screen=True, window_size=(1200, 900))
-    plotter.set_background("black")
-    plotter.add_fiblets(brain)
-    plotter.view_vector((-1, 0, 0), viewup=(0, 0, 1))
-    plotter.camera.zoom(1.5)
-    plotter.screenshot(folder / "first_picture.png")
-    plotter.close()
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))
+plotter = pv.Plotter(off_screen=True, window_size=(1200, 900))
+plotter.set_background("black")
+plotter.add_fiblets(brain)
+plotter.view_vector((-1, 0, 0), viewup=(0, 0, 1))
+plotter.camera.zoom(1.5)
+plotter.screenshot(folder / "first_picture.png")

@@ -16,39 +16,25 @@ import pyvista as pv
 import pvfiblets
 from pvfiblets.synthetic import BUNDLES, brain_streamlines
 
-
-def main(folder: Path) -> None:
-    """Colour by orientation, by length, by FA in each point, and one colour per bundle."""
-    folder.mkdir(parents=True, exist_ok=True)
-    brain = brain_streamlines(8_000, fa=True)
-    fiblets = pvfiblets.compress(brain, per_point=["fa"])
-    palette = np.random.default_rng(3).uniform(0.2, 1.0, (len(BUNDLES), 3))
-
-    plotter = pv.Plotter(off_screen=True, shape=(2, 2), window_size=(1600, 1200), border=False)
-    plotter.set_background("black")
-    bar = {"color": "white", "vertical": True, "position_x": 0.88, "position_y": 0.2, "height": 0.6}
-    panels = {
-        "orientation": {},
-        "length": {"scalars": "length", "cmap": "plasma", "scalar_bar_args": bar},
-        "FA in each point": {
-            "scalars": "fa",
-            "cmap": "viridis",
-            "clim": (0.1, 0.7),
-            "scalar_bar_args": {**bar, "title": "FA"},
-        },
-        "bundles": {"scalars": palette[fiblets.per_streamline["bundle"]]},
-    }
-    for index, (title, colours) in enumerate(panels.items()):
-        plotter.subplot(index // 2, index % 2)
-        plotter.add_fiblets(fiblets, **colours)
-        plotter.add_text(title, font_size=12, color="white")
-        plotter.view_vector((-1, 0, 0), viewup=(0, 0, 1))
-        plotter.camera.zoom(1.5)
-    for scalar_bar in plotter.scalar_bars.values():
-        scalar_bar.SetVerticalTitleSeparation(14)  # a title does not stand on the first number
-    plotter.screenshot(folder / "colours.png")
-    plotter.close()
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+folder.mkdir(parents=True, exist_ok=True)
+fiblets = pvfiblets.compress(brain_streamlines(8_000, fa=True), per_point=["fa"])
+bar = {"color": "white", "vertical": True, "position_x": 0.88, "position_y": 0.2, "height": 0.6}
+palette = np.random.default_rng(3).uniform(0.2, 1.0, (len(BUNDLES), 3))
+panels = {
+    "orientation": {},
+    "length": {"scalars": "length", "cmap": "plasma", "scalar_bar_args": bar},
+    "FA in each point": {"scalars": "fa", "clim": (0.1, 0.7), "scalar_bar_args": {**bar, "title": "FA"}},
+    "bundles": {"scalars": palette[fiblets.per_streamline["bundle"]]},  # a colour per streamline
+}
+plotter = pv.Plotter(off_screen=True, shape=(2, 2), window_size=(1600, 1200), border=False)
+plotter.set_background("black", all_renderers=True)
+for index, (title, colours) in enumerate(panels.items()):
+    plotter.subplot(*divmod(index, 2))
+    plotter.add_fiblets(fiblets, **colours)
+    plotter.add_text(title, font_size=12, color="white")
+    plotter.view_vector((-1, 0, 0), viewup=(0, 0, 1))
+    plotter.camera.zoom(1.5)
+for scalar_bar in plotter.scalar_bars.values():
+    scalar_bar.SetVerticalTitleSeparation(14)  # off the first number
+plotter.screenshot(folder / "colours.png")

@@ -16,32 +16,24 @@ from matplotlib.figure import Figure
 import pvfiblets
 from pvfiblets.synthetic import brain_streamlines
 
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+folder.mkdir(parents=True, exist_ok=True)
+sizes = {}
+lines = pv.wrap(brain_streamlines(500).to_polydata())
+lines.clear_data()  # points alone: some formats cannot hold bundles, and warn
+for suffix in (".tck", ".trk", ".trx", ".vtp", ".fiblets"):
+    path = folder / f"lines{suffix}"
+    lines.save(path)
+    again = pv.read(path)
+    sizes[suffix] = path.stat().st_size / again.n_points
+    print(f"{path.name:<14} {path.stat().st_size:>9,} bytes, {again.n_lines} lines, {again.n_points:,} points")
 
-def main(folder: Path) -> None:
-    """Write one tractogram in every format, and compare and plot the sizes."""
-    folder.mkdir(parents=True, exist_ok=True)
-    sizes = {}
-    lines = pv.wrap(brain_streamlines(500).to_polydata())
-    lines.clear_data()  # points alone: some formats cannot hold bundles, and warn
-    for suffix in (".tck", ".trk", ".trx", ".vtp", ".fiblets"):
-        path = folder / f"lines{suffix}"
-        lines.save(path)
-        again = pv.read(path)
-        sizes[suffix] = path.stat().st_size / again.n_points
-        print(f"{path.name:<14} {path.stat().st_size:>9,} bytes, {again.n_lines} lines, {again.n_points:,} points")
+figure = Figure(figsize=(9, 3.5), layout="constrained")
+axes = figure.subplots()
+axes.bar_label(axes.barh(list(sizes)[::-1], list(sizes.values())[::-1], color="teal"), fmt="%.1f", padding=4)
+axes.set_xlabel("bytes per point")
+figure.savefig(folder / "sizes.png", dpi=130)
 
-    figure = Figure(figsize=(9, 3.5), layout="constrained")
-    axes = figure.subplots()
-    bars = axes.barh(list(sizes)[::-1], list(sizes.values())[::-1], color="teal")
-    axes.bar_label(bars, fmt="%.1f", padding=4)
-    axes.set_xlabel("bytes per point")
-    axes.spines[["top", "right"]].set_visible(False)
-    figure.savefig(folder / "sizes.png", dpi=130)
-
-    # From file to file, whatever its size, without ever holding it whole:
-    result = pvfiblets.compress_file(folder / "lines.trk", folder / "from_trk.fiblets")
-    print(f"{result['bytes_per_point']:.2f} bytes per point, greatest error {result['error_mm']['max']:.4f} mm")
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))
+# From file to file, whatever its size, without ever holding it whole:
+result = pvfiblets.compress_file(folder / "lines.trk", folder / "from_trk.fiblets")
+print(f"{result['bytes_per_point']:.2f} bytes per point, greatest error {result['error_mm']['max']:.4f} mm")

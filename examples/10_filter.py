@@ -16,49 +16,27 @@ import pvfiblets
 from pvfiblets import regions
 from pvfiblets.synthetic import brain_streamlines
 
-
-def main(folder: Path) -> None:
-    """Write one picture of four choices, and a file of the last one."""
-    folder.mkdir(parents=True, exist_ok=True)
-    fiblets = pvfiblets.compress(brain_streamlines(8_000))
-    ball = regions.Sphere((-20, -10, 25), 14)
-    top = regions.Plane((0, 0, 1), (0, 0, 55))
-    plotter = pv.Plotter(off_screen=True, window_size=(1000, 800), shape=(2, 2))
-    for index in range(4):
-        plotter.subplot(index // 2, index % 2)
-        plotter.set_background("black")
-        bar = {"color": "white", "vertical": True, "height": 0.8, "position_x": 0.89, "position_y": 0.05}
-        actor = plotter.add_fiblets(fiblets, scalar_bar_args=bar)
-        if index == 0:
-            title = "length 60 to 90 mm, curvature below 0.06 / mm"
-            actor.criterion("length", (60, 90))
-            actor.criterion("curvature", (0, 0.06))  # a number per point: parts of streamlines go
-        elif index == 1:
-            title = "through the ball, not ending in it"
-            actor.include(ball)
-            actor.exclude(regions.ends_in(ball))
-            plotter.add_mesh(pv.Sphere(radius=14, center=(-20, -10, 25)), color="white", opacity=0.3)
-        elif index == 2:
-            names = list(fiblets.groups)[:3]
-            title = "groups " + ", ".join(names)
-            actor.groups_shown = names
-            actor.scalars = "group"
-        else:
-            title = "ends above and passes the ball, or one in fifty"
-            chosen = actor.streamlines_where(regions.ends_in(top) & regions.passes(ball))
-            chosen[::50] = True
-            actor.show_only(chosen)
-            fiblets[chosen].save(folder / "chosen.trk")
-        plotter.add_text(title, position=(12, 370), font_size=10, color="white")
-        plotter.view_vector((-1, -1.2, 0.6), viewup=(0, 0, 1))
-        plotter.camera.zoom(1.4 if index == 2 else 1.55)
-        plotter.camera.SetWindowCenter(0.2 if index == 2 else 0.0, 0.08)  # room for the legend and the title
-        print(f"{title}: {actor.shown.sum():,} of {len(fiblets):,} streamlines")
-    plotter.show(auto_close=False)
-    plotter.screenshot(folder / "filter.png")
-    plotter.close()
-    print(pvfiblets.read(folder / "chosen.trk"))
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+folder.mkdir(parents=True, exist_ok=True)
+fiblets = pvfiblets.compress(brain_streamlines(8_000))
+ball, top = regions.Sphere((-20, -10, 25), 14), regions.Plane((0, 0, 1), (0, 0, 55))
+titles = "50 to 90 mm, little curvature", "through the ball, not ending in it", "three groups", "a mask"
+plotter = pv.Plotter(off_screen=True, window_size=(1000, 800), shape=(2, 2))
+plotter.set_background("black", all_renderers=True)
+for index, title in enumerate(titles):
+    plotter.subplot(*divmod(index, 2))
+    plotter.add_text(title, position=(12, 370), font_size=11, color="white")
+    plotter.add_fiblets(fiblets, scalars="group" if title == "three groups" else None, show_scalar_bar=False)
+    plotter.view_vector((-1, -1.2, 0.6), viewup=(0, 0, 1))
+    plotter.camera.zoom(1.4)
+by_number, by_region, by_group, by_mask = plotter.fiblets
+by_number.criterion("length", (50, 90))
+by_number.criterion("curvature", (0, 0.06))  # a number per point: hides parts of streamlines
+by_region.include(ball)
+by_region.exclude(regions.ends_in(ball))
+by_group.groups_shown = ["callosum", "corona", "thalamic"]
+chosen = fiblets.select(regions.ends_in(top) & regions.passes(ball))
+chosen[::50] = True
+by_mask.show_only(chosen)
+plotter.screenshot(folder / "filter.png")
+fiblets[chosen].save(folder / "chosen.trk")

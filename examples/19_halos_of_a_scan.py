@@ -37,26 +37,21 @@ def scan(mesh: pv.PolyData, n: int, seed: int = 0) -> np.ndarray:
     return a[hit] + u * (b - a)[hit] + v * (c - a)[hit]
 
 
-def main(folder: Path) -> None:
-    """Write a picture of the skeleton in ink, and of its head in light."""
-    folder.mkdir(parents=True, exist_ok=True)
-    points = scan(surface(), 300_000)
-    window = {"window_size": (1500, 800), "shape": (1, 2), "border": False}
-    plotter = pv.Plotter(off_screen=True, **window)
-    sizes = {"point_size": 0.55, "halo_size": 5.0, "max_displacement": 12.0}  # mm
-    plotter.set_background("white", all_renderers=False)
-    actor = plotter.add_halo_points(points, **sizes, displacement="square root")
-    plotter.view_vector((0.3, -0.5, -1.0), viewup=(0, -1, 0))
-    plotter.camera.zoom(1.35)
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+folder.mkdir(parents=True, exist_ok=True)
+points = scan(surface(), 300_000)
+window = {"window_size": (1500, 800), "shape": (1, 2), "border": False}
+plotter = pv.Plotter(off_screen=True, **window)
+sizes = {"point_size": 0.55, "halo_size": 5.0, "max_displacement": 12.0}  # mm
+plotter.set_background("white", all_renderers=False)
+actor = plotter.add_halo_points(points, **sizes, displacement="square root")
+plotter.view_vector((0.3, -0.5, -1.0), viewup=(0, -1, 0))
+plotter.camera.zoom(1.35)
 
-    plotter.subplot(0, 1)
-    plotter.set_background("black", all_renderers=False)
-    plotter.add_halo_points(points, **sizes, displacement="square root")
-    plotter.camera_position = [(420.0, 60.0, -330.0), (390.0, 215.0, 90.0), (0.0, -1.0, 0.0)]
-    plotter.screenshot(folder / "halos_of_a_scan.png")
-    print(f"{actor.explain()['points_total']:,} points, {actor.explain()['gpu_bytes'] / 1e6:.0f} MB with pictures")
-    plotter.close()
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))
+plotter.subplot(0, 1)
+plotter.set_background("black", all_renderers=False)
+plotter.add_halo_points(points, **sizes, displacement="square root")
+plotter.camera_position = [(420.0, 60.0, -330.0), (390.0, 215.0, 90.0), (0.0, -1.0, 0.0)]
+plotter.screenshot(folder / "halos_of_a_scan.png")
+print(f"{actor.explain()['points_total']:,} points, {actor.explain()['gpu_bytes'] / 1e6:.0f} MB with pictures")
+plotter.close()

@@ -16,41 +16,28 @@ import pyvista as pv
 
 from pvfiblets.synthetic.vessels import vessel_tree
 
-EYE = (0.35, -1.0, 0.15)
-# Light: thin parts nearly vanish, bright parts are solid.
-LIGHT = {"opacity": [0, 0.02, 0.2, 0.7, 0.95, 1, 1], "opacity_unit_distance": 2.0, "cmap": "hot"}
-WAYS = {
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+folder.mkdir(parents=True, exist_ok=True)
+opacity = [0, 0.02, 0.2, 0.7, 0.95, 1, 1]  # thin parts nearly vanish, bright parts are solid
+ways = {
     "surface": {"mode": "isosurface", "values": 70, "color": "#f2907c"},
     "greatest value": {"mode": "mip", "cmap": "gray", "opacity": 1.0},
     "first peak of 60 or more": {"mode": "local-mip", "peak": 60, "cmap": "gray", "opacity": 1.0},
-    "light": {"mode": "composite", **LIGHT},
+    "light": {"mode": "composite", "cmap": "hot", "opacity": opacity, "opacity_unit_distance": 2.0},
 }
-
-
-def main(folder: Path) -> None:
-    """Write one picture of the four ways side by side."""
-    folder.mkdir(parents=True, exist_ok=True)
-    volume = vessel_tree(192, noise=0.04)
-    plotter = pv.Plotter(off_screen=True, window_size=(1240, 1320), shape=(2, 2), border=False)
-    plotter.set_background("black", all_renderers=True)
-    for index, (title, way) in enumerate(WAYS.items()):
-        plotter.subplot(*divmod(index, 2))
-        plotter.picture.antialias = 4  # samples a pixel instead of 16: each takes seconds without a graphics card
-        actor = plotter.add_raycast_volume(volume, clim=(20, 255), step=0.4, show_scalar_bar=False, **way)
-        if actor.mode == "isosurface":
-            actor.prop.specular, actor.prop.specular_power = 0.35, 25
-            actor.ray_occlusion = {"radius": 12.0, "samples": 24}
-        elif actor.mode != "composite":  # the higher peak of two is not always the nearer one: fading says which is
-            actor.depth_cue = {"color": "black", "strength": 0.6}
-        plotter.add_text(title, font_size=12, color="white", position=(20, 20))
-        plotter.view_vector(EYE, viewup=(0, 0, 1))
-        plotter.camera.zoom(1.75)
-        plotter.camera.focal_point = (3.0, 0.0, -8.0)
-    plotter.screenshot(folder / "angiogram.png")
-    told = actor.explain()
-    print(f"{told['voxels_total']:,} voxels; {told['skipped']:.0%} of the octree's leaves show nothing")
-    plotter.close()
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))
+volume = vessel_tree(192, noise=0.04)
+plotter = pv.Plotter(off_screen=True, window_size=(1240, 1320), shape=(2, 2), border=False)
+plotter.set_background("black", all_renderers=True)
+for index, (title, way) in enumerate(ways.items()):
+    plotter.subplot(*divmod(index, 2))
+    plotter.picture.antialias = 4  # samples a pixel instead of 16: each takes seconds without a graphics card
+    actor = plotter.add_raycast_volume(volume, clim=(20, 255), show_scalar_bar=False, **way)
+    if actor.mode == "isosurface":
+        actor.ray_occlusion = {"radius": 12.0, "samples": 24}
+    elif actor.mode != "composite":  # the higher peak of two is not always the nearer one: fading says which is
+        actor.depth_cue = {"color": "black", "strength": 0.6}
+    plotter.add_text(title, font_size=12, color="white", position=(20, 20))
+    plotter.view_vector((0.35, -1.0, 0.15), viewup=(0, 0, 1))
+    plotter.camera.zoom(1.75)
+    plotter.camera.focal_point = (3.0, 0.0, -8.0)
+plotter.screenshot(folder / "angiogram.png")

@@ -11,7 +11,6 @@ Run it as ``python examples/26_linked_slices.py [FOLDER]``.
 import sys
 from pathlib import Path
 
-import nibabel
 import numpy as np
 import pyvista as pv
 
@@ -19,40 +18,26 @@ import pvfiblets
 from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.synthetic.vessels import brain_like
 
-
-def made_up_head() -> nibabel.Nifti1Image:
-    """Return an image that looks like a T1-weighted one; a file's path would do as well."""
-    head = brain_like(144, noise=0.02)
-    affine = np.diag([1.3, 1.3, 1.25, 1.0]) @ head.affine
-    affine[:3, 3] += (0.0, -18.0, 4.0)
-    return nibabel.Nifti1Image(head.values.astype(np.float32), affine)
-
-
-def main(folder: Path) -> None:
-    """Write a picture of the workspace."""
-    folder.mkdir(parents=True, exist_ok=True)
-    fiblets = pvfiblets.compress(brain_streamlines(20_000, seed=2))
-    directions = fiblets.density(2.0, contrast="direction")
-    counts = fiblets.density(like=directions)
-
-    plotter = pv.Plotter(off_screen=True, window_size=(1000, 1000), shape=(2, 2))
-    plotter.set_background("black", all_renderers=True)
-    workspace = plotter.slices.workspace(made_up_head(), thickness=1.5)
-    workspace.slices.layers[0].below = 15.0  # air would occlude the slices behind it
-    most = float(np.percentile(counts.values, 99.0))
-    workspace.slices.add(directions, kind="direction", modulate=counts, clim=(0.0, most), below=0.3 * most, opacity=0.5)
-    plotter.add_fiblets(fiblets[fiblets.groups["callosum"]], lighting=False)
-    workspace.position = (8.0, -24.0, 30.0)
-    workspace.add_contours(pv.Sphere(radius=15.0, center=workspace.position), "white")
-    plotter.view_isometric()
-    plotter.camera.zoom(1.4)
-
-    found = workspace.values(radius=3.0)
-    print(found.images, {name: len(ids) for name, ids in found.streamlines.items()})
-    plotter.show(auto_close=False)
-    plotter.screenshot(folder / "slices.png")
-    plotter.close()
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+folder.mkdir(parents=True, exist_ok=True)
+head = brain_like(144, noise=0.02)  # a made-up image; a file's path would do as well
+affine = np.diag([1.3, 1.3, 1.25, 1.0]) @ head.affine
+affine[:3, 3] += (0.0, -18.0, 4.0)
+fiblets = pvfiblets.compress(brain_streamlines(20_000, seed=2))
+directions = fiblets.density(2.0, contrast="direction")
+counts = fiblets.density(like=directions)
+plotter = pv.Plotter(off_screen=True, window_size=(1000, 1000), shape=(2, 2))
+plotter.set_background("black", all_renderers=True)
+workspace = plotter.slices.workspace((head.values, affine), thickness=1.5)
+workspace.slices.layers[0].below = 15.0  # air would occlude the slices behind it
+most = float(np.percentile(counts.values, 99.0))
+workspace.slices.add(directions, kind="direction", modulate=counts, clim=(0.0, most), below=0.3 * most, opacity=0.5)
+plotter.add_fiblets(fiblets[fiblets.groups["callosum"]], lighting=False)
+workspace.position = (8.0, -24.0, 30.0)
+workspace.add_contours(pv.Sphere(radius=15.0, center=workspace.position), "white")
+plotter.view_isometric()
+plotter.camera.zoom(1.4)
+found = workspace.values(radius=3.0)
+print(found.images, {name: len(ids) for name, ids in found.streamlines.items()})
+plotter.show(auto_close=False)
+plotter.screenshot(folder / "slices.png")

@@ -32,52 +32,46 @@ def made_up_atlas(fiblets: pvfiblets.FibletSet) -> tuple[np.ndarray, np.ndarray]
     affine[:3, 3] = low
     return 1 + x[:, None, None] + 4 * (y[:, None] + 5 * z), affine
 
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+folder.mkdir(parents=True, exist_ok=True)
+fiblets = pvfiblets.compress(brain_streamlines(6000, seed=3, fa=True), per_point=["fa"])
+fiblets.groups.clear()
+clusters = fiblets.clusters(threshold=18.0)
+for color, cluster in zip(COLOURS, clusters.by_size(), strict=False):
+    fiblets.bundles.add(f"bundle {len(fiblets.bundles) + 1}", cluster, color=color)
+first = fiblets.bundles["bundle 1"]
+more = fiblets.similar(first.ids[:3], distance=12.0)
+print(clusters, more)
 
-def main(folder: Path) -> None:
-    """Write a picture of bundles and connections, one of numbers, and two tables."""
-    folder.mkdir(parents=True, exist_ok=True)
-    fiblets = pvfiblets.compress(brain_streamlines(6000, seed=3, fa=True), per_point=["fa"])
-    fiblets.groups.clear()
-    clusters = fiblets.clusters(threshold=18.0)
-    for color, cluster in zip(COLOURS, clusters.by_size(), strict=False):
-        fiblets.bundles.add(f"bundle {len(fiblets.bundles) + 1}", cluster, color=color)
-    first = fiblets.bundles["bundle 1"]
-    more = fiblets.similar(first.ids[:3], distance=12.0)
-    print(clusters, more)
+profiles = [bundles.tract_profile(fiblets, one.name, "fa", n=50) for one in list(fiblets.bundles)[:3]]
+bundles.profile_table(profiles).save(folder / "profiles.csv")
+bundles.bundle_table(fiblets).save(folder / "bundles.csv")
 
-    profiles = [bundles.tract_profile(fiblets, one.name, "fa", n=50) for one in list(fiblets.bundles)[:3]]
-    bundles.profile_table(profiles).save(folder / "profiles.csv")
-    bundles.bundle_table(fiblets).save(folder / "bundles.csv")
+matrix = fiblets.connectome(made_up_atlas(fiblets), radius=4.0)
+apart = np.triu(matrix.matrix, 1)
+a, b = np.unravel_index(apart.argmax(), apart.shape)
+between = matrix.streamlines(int(matrix.labels[a]), int(matrix.labels[b]))
+print(matrix, f"{len(between)} streamlines connect {matrix.names[a]} and {matrix.names[b]}")
 
-    matrix = fiblets.connectome(made_up_atlas(fiblets), radius=4.0)
-    apart = np.triu(matrix.matrix, 1)
-    a, b = np.unravel_index(apart.argmax(), apart.shape)
-    between = matrix.streamlines(int(matrix.labels[a]), int(matrix.labels[b]))
-    print(matrix, f"{len(between)} streamlines connect {matrix.names[a]} and {matrix.names[b]}")
+plotter = pv.Plotter(off_screen=True, window_size=(1400, 600), shape=(1, 2), border=False)
+plotter.set_background("black", all_renderers=True)
+actor = plotter.add_fiblets(fiblets, scalars="group", line_width=2, show_scalar_bar=False)
+actor.include(np.isin(np.arange(len(fiblets)), np.concatenate([one.ids for one in fiblets.bundles])))
+plotter.view_yz(negative=True)
+plotter.camera.zoom(1.5)
+plotter.subplot(0, 1)
+plotter.add_fiblets(fiblets[::8], color="grey", lighting=False)
+plotter.add_fiblets(fiblets[between], line_width=4)
+plotter.view_yz(negative=True)
+plotter.camera.zoom(1.5)
+plotter.screenshot(folder / "bundles.png")
+plotter.close()
 
-    plotter = pv.Plotter(off_screen=True, window_size=(1400, 600), shape=(1, 2), border=False)
-    plotter.set_background("black", all_renderers=True)
-    actor = plotter.add_fiblets(fiblets, scalars="group", line_width=2, show_scalar_bar=False)
-    actor.include(np.isin(np.arange(len(fiblets)), np.concatenate([one.ids for one in fiblets.bundles])))
-    plotter.view_yz(negative=True)
-    plotter.camera.zoom(1.5)
-    plotter.subplot(0, 1)
-    plotter.add_fiblets(fiblets[::8], color="grey", lighting=False)
-    plotter.add_fiblets(fiblets[between], line_width=4)
-    plotter.view_yz(negative=True)
-    plotter.camera.zoom(1.5)
-    plotter.screenshot(folder / "bundles.png")
-    plotter.close()
-
-    figure = Figure(figsize=(11, 4.2), layout="constrained")
-    left, right = figure.subplots(1, 2)
-    for one, profile in zip(fiblets.bundles, profiles, strict=False):
-        profile.plot(left, color=one.color)
-    left.legend()
-    shown = right.imshow(np.log10(np.where(matrix.matrix > 0, matrix.matrix, np.nan)), cmap="inferno")
-    figure.colorbar(shown, ax=right, label="log10 of streamlines")
-    figure.savefig(folder / "bundles_numbers.png", dpi=120)
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))
+figure = Figure(figsize=(11, 4.2), layout="constrained")
+left, right = figure.subplots(1, 2)
+for one, profile in zip(fiblets.bundles, profiles, strict=False):
+    profile.plot(left, color=one.color)
+left.legend()
+shown = right.imshow(np.log10(np.where(matrix.matrix > 0, matrix.matrix, np.nan)), cmap="inferno")
+figure.colorbar(shown, ax=right, label="log10 of streamlines")
+figure.savefig(folder / "bundles_numbers.png", dpi=120)

@@ -39,6 +39,7 @@ def test_the_page_runs(client, tmp_path, monkeypatch, capsys):
         table = pyarrow.parquet.read_table(Path(command[command.index("-o") + 1]) / f"{command[2]}.parquet")
         assert set(table["subject"].to_pylist()) == {"01", "02"}
     capsys.readouterr()
-    text = blocks[1][1].replace("labels=", "cluster=client, labels=")
+    text = blocks[1][1].replace("values=", "cluster=client, values=")
     exec(text, {"__name__": "__main__", "client": client})  # the page's own words
-    assert capsys.readouterr().out.endswith(" {}\n")
+    assert capsys.readouterr().out.endswith("2 {}\n")
+    assert Path("along.png").stat().st_size > 10_000

@@ -67,9 +67,10 @@ def ask_token(wrong: bool) -> str:
     hint = "<p><strong>That is not the token.</strong></p>" if wrong else ""
     return page(
         "A token is needed",
-        f"{hint}<p>Whoever started this server was shown an address with a token in it. Open that address, or enter "
-        'the token here.</p><form method="post" action="/token"><input name="token" type="password" autofocus '
-        'autocomplete="off" aria-label="Token"><button>Open</button></form>',
+        f"{hint}<p>When it starts, the server prints an address with the token, or the file that holds it. Open "
+        'that address, or enter the token here.</p><form method="post" action="/token">'
+        '<input name="token" type="password" autofocus autocomplete="off" aria-label="Token">'
+        "<button>Open</button></form>",
     )
 
 
@@ -87,8 +88,8 @@ def full(limit: int) -> str:
     many = "one session is" if limit == 1 else f"{limit} sessions are"
     return page(
         "All sessions are taken",
-        f"<p>{many.capitalize()} open, the most that this server allows at once. A place becomes free when somebody "
-        'closes a session.</p><p><a class="button" href="/">Try again</a></p>',
+        f"<p>{many.capitalize()} open, the most that this server allows at once. Try again when another session "
+        'has ended.</p><p><a class="button" href="/">Try again</a></p>',
     )
 
 
