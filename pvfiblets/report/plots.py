@@ -137,11 +137,13 @@ def _mark(panel: Any, record: Record, pair: Axes, colour: str, marker: str, floo
 
 def _ticks(panel: Any, pair: Axes, xs: Sequence[float], ys: Sequence[float], floor: float) -> None:
     """Plain numbers where powers of ten alone would leave one or none; a tick for errors of 0."""
-    panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if max(xs) < 300.0 * min(xs) else (1.0,)))
+    low, high = min(xs), max(xs)
+    subs = (1.0, 2.0, 5.0) if high < 60.0 * low else (1.0, 3.0) if high < 300.0 * low else (1.0,)
+    panel.xaxis.set_major_locator(LogLocator(subs=subs))
     panel.xaxis.set_minor_locator(NullLocator())
     panel.yaxis.set_minor_locator(NullLocator())
     panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: _short(x)))
-    panel.set_xlim(min(xs) / 1.25, max(xs) * 1.25)
+    panel.set_xlim(low / 1.25, high * 1.25)
     if min(ys) > 0.0 and max(ys) < 30.0 * min(ys):
         narrow = max(ys) < 5.0 * min(ys)
         panel.yaxis.set_major_locator(LogLocator(subs=(1.0, 1.5, 2.0, 3.0, 5.0, 7.0) if narrow else (1.0, 2.0, 5.0)))
