@@ -26,11 +26,13 @@ plotter.screenshot(folder / "live_1_orientation.png")
 
 actor.scalars, actor.cmap, actor.clim = "curvature", "inferno", (0.0, 0.2)
 plotter.scalar_bars["curvature [1/mm]"].SetVerticalTitleSeparation(12)  # off the first number
+plotter.render()
 plotter.screenshot(folder / "live_2_curvature.png")
 
 actor.color, actor.line_width = "gold", 3
 actor.tube_shading = actor.ambient_occlusion = True
 actor.subset(0.4)
+plotter.render()
 plotter.screenshot(folder / "live_3_gold.png")
 
 report = actor.explain()

@@ -33,6 +33,7 @@ actor.select(visible.ids)
 actor.grow_selection(8.0)  # adds streamlines with ends within 8 mm of selected ends
 actor.selection_style(color="gold", as_tubes=True, radius=0.8, dim=0.75)
 print(actor.selection_statistics("fa"))
+plotter.render()
 plotter.screenshot(folder / "selection.png")
 actor.selection_profile("fa").plot().figure.savefig(folder / "profile.png", dpi=100)
 actor.save_selection(folder / "selection.trx")

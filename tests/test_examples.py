@@ -58,8 +58,9 @@ def test_example_runs_and_makes_what_it_names(script, tmp_path):
     made = {path.name for path in tmp_path.iterdir()}
     named = set(re.findall(r'folder / "([^"]+)"', script.read_text()))
     assert named <= made
-    for picture in tmp_path.glob("*.png"):
-        pixels = np.asarray(Image.open(picture).convert("RGB"))
+    pictures = {path: np.asarray(Image.open(path).convert("RGB")) for path in tmp_path.glob("*.png")}
+    assert len({pixels.tobytes() for pixels in pictures.values()}) == len(pictures), "two pictures are the same"
+    for picture, pixels in pictures.items():
         background = pixels[2, 2]
         assert (pixels != background).any(axis=2).mean() > 0.02, f"{picture.name} is nearly empty"
     assert made or done.stdout
