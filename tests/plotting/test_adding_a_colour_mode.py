@@ -71,8 +71,8 @@ assert (colours[:, 0] == colours[:, 1]).all() and (colours[:, 2] == 0).all() and
 for add, more, lines_of in (
     ("add_spline_tubes", {"radius": 0.5, "lighting": False},
      lambda a: tube_lines(a.mapper.tubes, a.mapper.colouring, 1000)),
-    ("add_halo_lines", {"line_width": 0.5},
-     lambda a: halo_lines(a.mapper.drawn, a.mapper.look, a.mapper.colouring, np.arange(1))),
+    ("add_halo_lines", {"line_width": 0.5, "halo_color": "white"},
+     lambda a: halo_lines(a.mapper.drawn, a.mapper.look, a.mapper.colouring, np.arange(1), None, (1, 1, 1))),
 ):
     _, actor, colours = drawn(add, **more)
     written = lines_of(actor).columns[COLOURS]

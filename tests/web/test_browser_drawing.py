@@ -135,7 +135,7 @@ def agrees(page):
 
     def same():
         wrong, drawn = differing(page.drawn(), page.of_server())
-        return drawn > 0.01 and wrong < 0.02  # of which most are edges of the ball, which VTK has smooth
+        return drawn > 0.01 and wrong < 0.04  # most of them edges of the ball, and of clear parts of slices, which VTK has otherwise
 
     return page.wait(same, "the server's picture")
 
@@ -183,7 +183,7 @@ def test_filters_colours_and_selections_send_what_they_change(here):
     assert agrees(here)
     here.press("b")
     here.page.wait_for_selector("#pv-over[data-tool=box]")
-    here.drag((0.15, 0.02), (0.6, 0.98))
+    here.drag((0.15, 0.02), (0.5, 0.98))
     here.wait(lambda: here.state("selection")["count"] > 0, "a selection")
     assert 0 < here.state("selection")["count"] < 29
     assert agrees(here)
@@ -263,7 +263,7 @@ def test_panes_are_the_servers_beside_the_browsers_view(here):
         if view.shape != server.shape:
             return False
         wrong, drawn = differing(view, server)
-        return drawn > 0.1 and wrong < 0.02
+        return drawn > 0.1 and wrong < 0.04
 
     def axial():
         return part(here.picture(), "axial")
