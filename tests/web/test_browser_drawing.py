@@ -135,7 +135,8 @@ def agrees(page):
 
     def same():
         wrong, drawn = differing(page.drawn(), page.of_server())
-        return drawn > 0.01 and wrong < 0.04  # most of them edges of the ball, and of clear parts of slices, which VTK has otherwise
+        # Most of them are edges of the ball, and of what slices leave clear, which VTK has otherwise.
+        return drawn > 0.01 and wrong < 0.04
 
     return page.wait(same, "the server's picture")
 
