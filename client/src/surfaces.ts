@@ -142,7 +142,7 @@ export class ImageSlice {
         up: layer.up,
         opacity: layer.opacity,
       });
-    program.textures({ pixels: this.texture });
+    program.ints({ clear: layer.clear ? 1 : 0 }).textures({ pixels: this.texture });
     this.gl.bindVertexArray(null);
     this.gl.drawArrays(this.gl.TRIANGLE_STRIP, 0, 4);
   }

@@ -201,7 +201,7 @@ def test_page_draws_the_points_that_are_chosen(width, plotter, fiblets, visit, t
     plotter.fiblets.export_page(tmp_path / "figure.html")
     wrong, drawn = differing(visit(tmp_path / "figure.html").picture(), expected)
     assert drawn > 0.1
-    assert wrong < 0.02  # where lines are about equally deep, the page's bands are in another order
+    assert wrong < 0.02  # lines of about equal depth may be in another order
 
 
 def test_empty_tiles_are_left_out_and_no_edge_of_a_line_with_them(visit, tmp_path):
