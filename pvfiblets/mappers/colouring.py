@@ -149,7 +149,7 @@ class Colouring:
         return MODES[self.mode]
 
     def with_ink(self, ink: tuple[float, ...]) -> Colouring:
-        """Return a colouring of that colour where it has none of its own."""
+        """Return this colouring, with the ink for its colour if it has none."""
         return self if self.color is not None else replace(self, color=ink)
 
     @property

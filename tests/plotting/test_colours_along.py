@@ -8,6 +8,7 @@ import pyvista as pv
 
 import pvfiblets
 from pvfiblets import bundles
+from pvfiblets.errors import FormatError
 from pvfiblets.streamlines import Streamlines
 
 from .views import facing_shot
@@ -67,6 +68,10 @@ def test_all_that_holds_a_profile_is_taken(plotter, tmp_path):
         actor.color_along(tmp_path / "many.tsv")
     with pytest.raises(KeyError, match="no column 'fa'"):
         actor.color_along(tmp_path / "many.tsv", ids="pair", column="fa")
+    for rows, said in (("0,1\n1\n", r"the row \['1'\], expected 2 cells"), ("0,1\n1,high\n", "the cell 'high'")):
+        (tmp_path / "bad.csv").write_text(f"position,mean\n{rows}")
+        with pytest.raises(FormatError, match=said):
+            actor.color_along(tmp_path / "bad.csv", ids="pair")
     assert actor.scalars == "p profile"
 
 

@@ -468,7 +468,7 @@ def test_lines_are_seen_through_the_outside_of_a_head(plotter):
 def test_images_without_an_outside_are_shown_whole():
     rng = np.random.default_rng(0)
     assert SliceImage(rng.random((9, 9, 9, 1)), np.eye(4)).outside() is None
-    signed = rng.normal(size=(32, 32, 32, 1))  # a map of statistics: what is around it is no darkest
+    signed = rng.normal(size=(32, 32, 32, 1))  # a map of statistics: nothing around it is dark
     signed[[0, 1, -1, -2]] = signed[:, [0, 1, -1, -2]] = signed[:, :, [0, 1, -1, -2]] = 0.0
     assert SliceImage(signed, np.eye(4)).outside() is None
     assert SliceImage(np.full((4, 4, 4, 1), np.nan), np.eye(4)).outside() is None

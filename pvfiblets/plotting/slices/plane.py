@@ -31,7 +31,7 @@ MOST_ACROSS = 768  # pixels along a side of a slice in the 3-D view, whatever it
 _PREPARE = "UserEvent"
 
 _CLEAR = "//VTK::TCoord::Impl\n  if (gl_FragData[0].a <= 0.002) { discard; }\n"
-# Between clear and opaque pixels the edge is where half of the colour is: blended there, what is behind would shine.
+# Pixels are clear or opaque. Blended, the edge between them would let the background through: it is cut at one half.
 _CUT = """//VTK::TCoord::Impl
   if (gl_FragData[0].a < 0.5) { discard; }
   gl_FragData[0] = vec4(gl_FragData[0].rgb / gl_FragData[0].a, 1.0);

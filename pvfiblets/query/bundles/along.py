@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec.decompress import select_streamlines
+from ...errors import FormatError
 from ...formats.attachments import read_values
 from ...streamlines import Streamlines
 from ...support.ragged import blocks
@@ -83,15 +84,17 @@ def values_along(
 def read_profile(
     path: str | os.PathLike[str], column: str = "mean", bundle: str | None = None
 ) -> tuple[Floats, Floats | None]:
-    """Read the numbers of a bundle's positions, and where these are, if a table says so."""
+    """Read the numbers of a bundle's positions, and the positions from the columns x, y, z if a table has them."""
     where = Path(path).expanduser()
     if where.suffix.lower() == ".npy":
         return read_values(where).astype(np.float64), None
     with where.open(newline="") as file:
         rows = [row for row in csv.reader(file, delimiter="\t" if where.suffix.lower() == ".tsv" else ",") if row]
-    if not rows or all(_is_number(cell) for cell in rows[0]):
+    if all(_is_number(word) for cell in (rows[0] if rows else []) for word in cell.split()):
         return read_values(where).astype(np.float64), None
     names, rows = rows[0], rows[1:]
+    if ragged := next((row for row in rows if len(row) != len(names)), None):
+        raise FormatError(where, None, f"the row {ragged}", f"{len(names)} cells in each row, as in the first")
     if column not in names:
         raise KeyError(f"{where} has no column {column!r}; it has: {', '.join(names)}")
     if "bundle" in names:
@@ -100,30 +103,29 @@ def read_profile(
         if bundle not in known and len(known) > 1:
             raise ValueError(f"{where} has profiles of {', '.join(known)}; give the name of one of these groups as ids")
         rows = [row for row in rows if bundle not in known or row[at] == bundle]
-    values, *core = (
-        np.array([float(row[names.index(name)] or "nan") for row in rows])
-        for name in (column, *(axis for axis in "xyz" if axis in names))
-    )
+    wanted = [column, *(axis for axis in "xyz" if axis in names)]
+    cells = [[row[names.index(name)] or "nan" for row in rows] for name in wanted]
+    if wrong := next((cell for found in cells for cell in found if not _is_number(cell)), None):
+        raise FormatError(where, None, f"the cell {wrong!r}", f"numbers in the columns {', '.join(wanted)}")
+    values, *core = (np.array(found, np.float64) for found in cells)
     return values, np.stack(core, axis=1) if len(core) == 3 and np.isfinite(core).all() else None
 
 
 def _is_number(text: str) -> bool:
     try:
-        float(text or "nan")
+        float(text)
     except ValueError:
-        return all(_is_number(word) for word in text.split()) if len(text.split()) > 1 else False
+        return False
     return True
 
 
 def _shares(points: Floats, offsets: npt.NDArray[np.int64]) -> Floats:
     """Return the arc length up to each point as a share of its streamline's; 0 where that has no length."""
-    steps = np.zeros(len(points))
-    steps[1:] = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    steps[offsets[:-1]] = 0.0
-    sums = np.cumsum(steps)
-    counts = np.diff(offsets)
-    along = sums - np.repeat(sums[offsets[:-1]], counts)
-    length = np.repeat(along[offsets[1:] - 1], counts)
+    from ..measures.measure_kernels import arc_lengths
+
+    along = np.empty(len(points))
+    arc_lengths(points, offsets, along)
+    length = np.repeat(along[offsets[1:] - 1], np.diff(offsets))
     return np.divide(along, length, out=np.zeros(len(points)), where=length > 0.0)
 
 
