@@ -282,7 +282,7 @@ export class Renderer {
 
   /** Resolves when a picture at rest is finished. */
   settled(): Promise<void> {
-    if (!this.dirty && !this.frame && !this.loading) return Promise.resolve();
+    if (!this.dirty && !this.frame && !this.moving && !this.loading) return Promise.resolve();
     return new Promise((resolve) => this.waiting.push(resolve));
   }
 

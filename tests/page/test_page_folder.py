@@ -191,3 +191,24 @@ def test_what_is_wrong_with_data_beside_a_page_is_said(serve, visit, folder, tmp
     page.page.wait_for_selector("body[data-state=failed]")
     assert 'Files beside a page need one; "python -m http.server" is enough' in page.message
     page.errors.clear()
+
+
+def test_a_page_settles_with_a_picture_at_rest(folder, visit, expected):
+    page = visit(folder / "one.html").settled()
+    # A picture while something moves is short of lines; the one at rest follows 200 ms later.
+    still = page.page.evaluate(
+        """async () => {
+            let rests = 0;
+            pvfiblets.finished = () => { ++rests; };
+            pvfiblets.rate = 1;
+            for (const before = pvfiblets.frames; pvfiblets.frames === before;) {
+                pvfiblets.change(true);
+                await new Promise(requestAnimationFrame);
+            }
+            const moving = rests;
+            await pvfiblets.settled();
+            return [moving, rests];
+        }"""
+    )
+    assert still == [0, 1]
+    np.testing.assert_array_equal(page.picture(), expected)
