@@ -77,10 +77,13 @@ class EdgeSmoothing:
         """Whether all others are surfaces or volumes: VTK's lines and points are thinner without multisampling."""
         return all(_is_ours(prop) or prop.IsA("vtkVolume") or _is_surface(prop) for prop in self._shown())
 
-    def only_lines(self) -> list[Any]:
-        """Return the mappers of all that is shown, if these are the engine's; else none."""
+    def at_once(self) -> tuple[list[Any], list[Any]]:
+        """Return lines whose samples can be drawn at once, and all else that is shown; none if that is in the way."""
+        renderer: Any = self._renderer.Get()
         shown = self._shown()
-        return [prop.GetMapper() for prop in shown] if all(map(_is_ours, shown)) else []
+        lines = [prop for prop in shown if _is_ours(prop) and prop.GetMapper().layers_samples(renderer)]
+        others = [prop for prop in shown if prop not in lines]
+        return (lines, others) if all(map(_hides_by_depth, others)) else ([], [])
 
     def _shown(self) -> list[Any]:
         """Return what is visible but for what lies over the picture."""
@@ -103,6 +106,11 @@ def _is_surface(prop: Any) -> bool:
     look = prop.GetProperty()
     whole = not (look.GetEdgeVisibility() or look.GetVertexVisibility())
     return whole and look.GetRepresentationAsString() == "Surface"
+
+
+def _hides_by_depth(prop: Any) -> bool:
+    """Whether each sample of a prop is either opaque or not there, with single samples of a pixel."""
+    return (_is_ours(prop) or _is_surface(prop)) and not prop.HasTranslucentPolygonalGeometry()
 
 
 def _is_ours(prop: Any) -> bool:

@@ -13,8 +13,9 @@ The last frame is of the camera as it is: the last sample, or a frame of the mea
 thinner in samples. So G-buffers and depths are
 in the end those of the picture without refinement. Until then `pvfiblets.mappers.shifted_cameras` knows better.
 
-A picture of nothing but lines that is to be finished at once (`Picture.finishing`) gets all samples in one frame,
-as layers of the lines that they show (`pvfiblets.engine.fiblets.sample_layers`).
+Samples of lines are drawn at once where that can be, as layers of the lines that they show
+(`pvfiblets.engine.fiblets.sample_layers`). Samples of all else, such as meshes, are drawn before, one after the other,
+in *held* frames, of the camera as it is.
 
 A picture that ``vtkWindowToImageFilter`` puts together of tiles gets all samples of a tile in the tile's one frame.
 """
@@ -49,6 +50,7 @@ class _Frame(Enum):
     PLAIN = auto()
     SAMPLE = auto()
     MEAN = auto()
+    HELD = auto()  # in which samples of others were drawn; shown as the plain one before
     ADDED = auto()  # a sample of a tile, or a layer of all samples: not shown
 
 
@@ -87,6 +89,7 @@ class Refinement:
         self._exact = True
         self._painted = False
         self._shares: Any = None
+        self._others: Any = None
         self._back: Callable[[], None] | None = None
 
     @property
@@ -101,7 +104,7 @@ class Refinement:
     @property
     def taken(self) -> int:
         """Samples in the picture that was drawn last; 0 for a plain one."""
-        return 0 if self._frame is _Frame.PLAIN else self._taken
+        return 0 if self.plain else self._taken
 
     @property
     def remaining(self) -> int:
@@ -111,7 +114,7 @@ class Refinement:
     @property
     def few(self) -> bool:
         """Whether the picture that was drawn last would be better without its samples."""
-        return bool(self._left) and 0 < self.taken < SHOWN_FROM
+        return bool(self._left) and (self._frame is _Frame.HELD or 0 < self.taken < SHOWN_FROM)
 
     def unfinished(self, state: Hashable) -> bool:
         """Say whether more frames are wanted of a state, of which one has been drawn."""
@@ -141,8 +144,11 @@ class Refinement:
 
     # Steps of a frame
 
-    def start(self, renderer: Any, state: Hashable, *, layered: bool = False) -> None:
-        """Decide what the frame is that a renderer is about to draw, and shift its camera for a sample."""
+    def start(self, renderer: Any, state: Hashable, *, layered: bool = False, held: bool = False) -> None:
+        """Decide what the frame is that a renderer is about to draw, and shift its camera for a sample.
+
+        `layered`, `held`: the next one is, if it is not plain.
+        """
         due, self.due = self.due, False
         self._name, self._painted, self._begun = _WHOLE, False, time.perf_counter()
         self._unknown = state is None
@@ -156,14 +162,14 @@ class Refinement:
         if self._over:
             self._left = []
         if self._left and (due or self._taken) and not exact_wanted(renderer):
-            self._frame = _Frame.ADDED if layered else _Frame.SAMPLE
+            self._frame = _Frame.ADDED if layered else _Frame.HELD if held else _Frame.SAMPLE
             if layered:
                 self._left = []
-            else:
+            elif not held:
                 self._shift(renderer, self._left[0])
         elif self._taken >= (SHOWN_FROM if self._left else 1):
             self._frame = _Frame.MEAN
-        note_sample(renderer, begun=self._frame is not _Frame.PLAIN)
+        note_sample(renderer, begun=not self.plain)
 
     @property
     def untaken(self) -> bool:
@@ -175,15 +181,35 @@ class Refinement:
         """Whether the frame is to show all samples at once."""
         return self._frame is _Frame.ADDED
 
+    @property
+    def held(self) -> bool:
+        """Whether samples of others are to be drawn within the frame."""
+        return self._frame is _Frame.HELD
+
+    def other_frames(self, renderer: Any, positions: Iterable[tuple[float, float]]) -> Iterator[None]:
+        """Yield for each of some samples of others, with the camera shifted."""
+        self._frame = _Frame.ADDED
+        note_sample(renderer, begun=True)
+        try:
+            for position in positions:
+                self._shift(renderer, position)
+                try:
+                    yield
+                finally:
+                    self.put_back()
+        finally:
+            self._frame = _Frame.HELD
+            note_sample(renderer, begun=False)
+
     def layer_frames(self, layers: Iterable[Any]) -> Generator[Any, None, None]:
         """Yield the layers of all samples (`pvfiblets.engine.fiblets.sample_layers`), each to be drawn as it is."""
         try:
             for layer in layers:
-                self._shares = layer.shares
+                self._shares, self._others = layer.shares, layer.others
                 yield layer
             self._frame, self._taken = _Frame.MEAN, self.samples
         finally:
-            self._shares = None
+            self._shares = self._others = None
             if self._frame is _Frame.ADDED:
                 self._frame = _Frame.PLAIN
         self._spent += time.perf_counter() - self._begun
@@ -220,7 +246,7 @@ class Refinement:
     @property
     def plain(self) -> bool:
         """Whether the frame is the picture, not one of many or behind their mean."""
-        return self._frame is _Frame.PLAIN
+        return self._frame in (_Frame.PLAIN, _Frame.HELD)
 
     @property
     def idle(self) -> bool:
@@ -239,9 +265,15 @@ class Refinement:
         if self._frame is _Frame.PLAIN:
             sums.keep(colour, viewport, alike=alike)
             return
+        if self._frame is _Frame.HELD:
+            if sums.kept:
+                sums.show_kept(colour, viewport)
+            return
         if self._frame is not _Frame.MEAN:
             if not (self._painted if self._name == _TILE or self._shares is not None else self._taken):
                 sums.restart()
+            if self._others is not None:
+                sums.begin(self._others)
             sums.add(colour, viewport, self._shares, alike=alike)
             self._painted = True
         if self._frame is _Frame.SAMPLE and sums.kept and sums.samples < min(SHOWN_FROM, self.samples):

@@ -32,10 +32,12 @@ def refine(window: Any, *, cheaply: bool = False) -> bool:
     wanting = _unfinished(window)
     if any(picture.draw_part() for picture in wanting):
         return True
-    for picture in wanting:
+    singly = [picture for picture in wanting if picture.samples_others]
+    for picture in singly or wanting:
         picture.refinement.due = True  # also where parts are wanted: views that stay as they were are not drawn
+        picture.hurries = cheaply
     if wanting:
-        multisampled = not cheaply or any(picture.needs_multisamples for picture in wanting)
+        multisampled = not (singly or (cheaply and not any(picture.needs_multisamples for picture in wanting)))
         with nullcontext() if multisampled else without_multisamples(window):
             window.Render()
     return bool(_unfinished(window))

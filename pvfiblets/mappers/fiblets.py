@@ -22,7 +22,7 @@ from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
 from pvfiblets.query.selection.point_flags import Sampling
 
 if TYPE_CHECKING:
-    from pvfiblets.engine.fiblets.sample_layers import SampledLines
+    from pvfiblets.engine.fiblets.sample_layers import OtherSamples, SampledLines
 
 _OVER = object()
 
@@ -235,16 +235,18 @@ class FibletMapper(FilteredMapper[EngineOptions]):
         frame = frame_of(renderer, self.actor, (*renderer.GetOrigin(), *renderer.GetSize()))
         return frame, *self._wanted(renderer, frame, True)
 
-    def sample_layers(self, renderer: vtkRenderer, lines: Sequence[FibletMapper]) -> Generator[Any, None, None]:
+    def sample_layers(
+        self, renderer: vtkRenderer, lines: Sequence[FibletMapper], others: OtherSamples | None
+    ) -> Generator[Any, None, None]:
         """Yield what the engine does (`pvfiblets.engine.fiblets.sample_layers`) for samples of what a renderer shows.
 
-        Others may draw in between. ``lines`` are all that it shows, this first.
+        Others may draw in between. ``lines`` are all that it shows beside ``others``, this first.
         """
         context = self._context_in(renderer)
         assert context is not None
         engine = self._engine(context, context.slot(self))
         samples = engine.sample_layers()
-        steps = samples.draw([list(one.sampled_lines(renderer, context)) for one in lines])
+        steps = samples.draw([list(one.sampled_lines(renderer, context)) for one in lines], others)
         try:
             while context.alive:
                 with context.foreign():

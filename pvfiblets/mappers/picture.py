@@ -18,14 +18,17 @@ While nothing is changed, none of this exists.
 
 from __future__ import annotations
 
+import time
 import weakref
-from collections.abc import Callable, Generator, Hashable
+from collections.abc import Callable, Generator, Hashable, Iterator
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.effects.picture import Attachment, PictureEffects
+from pvfiblets.engine.effects.sample_positions import sample_squares
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.mappers.antialias_refinement import SAMPLES, Refinement
@@ -33,17 +36,30 @@ from pvfiblets.mappers.antialias_windows import finish, shown_pictures
 from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
 from pvfiblets.mappers.picture_prop import COLOUR, DEPTH, PictureProp, attachment
-from pvfiblets.mappers.scene import in_motion, lenses, streamed
+from pvfiblets.mappers.scene import in_motion, items_of, lenses, streamed
 from pvfiblets.mappers.scene_state import scene_state
 from pvfiblets.mappers.shifted_cameras import shifted
 from pvfiblets.mappers.tiles import Margin, margin_of
 from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
+
+if TYPE_CHECKING:
+    from pvfiblets.engine.fiblets.sample_layers import OtherSamples
 
 __all__ = ["DepthOfField", "Picture"]
 
 _EVENTS = ("StartEvent", "EndEvent", "ActiveCameraEvent")
 
 _COVERAGE = "coverage"
+_OTHERS = "samples of others"
+
+SIDE = 4  # squares along a pixel's side, each of which has one of the samples
+
+MOST_BYTES = 2**29
+"""Of samples of others that are kept; where they are more, samples are drawn one after the other."""
+
+PATIENCE = 0.2
+"""Seconds for samples of others in a frame of a window that somebody may use meanwhile."""
+
 ANTIALIAS = ("off", _COVERAGE)  # methods of smoothing edges of lines
 
 
@@ -52,9 +68,20 @@ class _Job:
     """Samples that are drawn at once, part by part, between the frames of a resting picture."""
 
     state: Hashable
-    lines: list[Any]                    # mappers, in the order in which they are drawn
-    steps: Generator[Any, None, None]   # shares of the work that is done, then layers
+    lines: list[Any]    # actors, in the order in which they are drawn
+    others: list[Any]   # all else that is shown
+    sampled: int = 0    # samples of others
+    steps: Generator[Any, None, None] | None = None   # shares of the work that is done, then layers
     share: float = 0.0
+
+    @property
+    def samples_others(self) -> bool:
+        return bool(self.others) and self.sampled < SAMPLES
+
+    @property
+    def progress(self) -> float:
+        """Share of all the work."""
+        return (self.sampled / SAMPLES + self.share) / 2.0 if self.others else self.share
 
 
 class Picture:
@@ -84,6 +111,7 @@ class Picture:
         # says whether somebody asks for more frames of the picture while it rests
         self.paced: Callable[[], bool] = lambda: False
         self._job: _Job | None = None
+        self.hurries = False  # whether nobody uses the window before the picture is finished
         self._lacks_memory = False
         self._fetched_in: Hashable = None  # a state in whose samples parts were fetched after all
         shown_pictures.add(self)
@@ -138,7 +166,7 @@ class Picture:
         """Samples that have been drawn of the picture at rest."""
         assert self._refinement is not None
         job = self._job
-        return self._refinement.taken if job is None else int(job.share * self._refinement.samples)
+        return self._refinement.taken if job is None else int(job.progress * self._refinement.samples)
 
     def draw_part(self) -> bool:
         """Draw a part of all samples at once, if that can be done; return whether there are more parts."""
@@ -146,14 +174,19 @@ class Picture:
         renderer, refinement = self.renderer, self._refinement
         assert refinement is not None
         state = self._state(renderer)
-        lines = self._lines_at_once(renderer)
+        lines, others = self._lines_at_once(renderer)
         if self._job is not None and not (lines and self._job.state == state):
             self._drop_job()
         if not lines:
             return False
         if self._job is None:
-            self._job = _Job(state, lines, lines[0].sample_layers(renderer, lines))
+            self._job = _Job(state, lines, others)
         job = self._job
+        if job.samples_others:
+            return False
+        if job.steps is None:
+            mappers = [line.GetMapper() for line in lines]
+            job.steps = mappers[0].sample_layers(renderer, mappers, self._other_samples(renderer) if others else None)
         if job.share < 1.0:
             renderer.GetRenderWindow().MakeCurrent()
             try:
@@ -180,12 +213,19 @@ class Picture:
 
     def draws_at_once(self) -> bool:
         """Whether the samples that the picture wants next are drawn at once."""
-        return bool(self._lines_at_once(self.renderer))
+        return bool(self._lines_at_once(self.renderer)[0])
+
+    @property
+    def samples_others(self) -> bool:
+        """Whether the next frame is to draw samples of what is not drawn at once."""
+        return self._job is not None and self._job.samples_others
 
     def _drop_job(self) -> None:
         job, self._job = self._job, None
-        if job is not None:
+        if job is not None and job.steps is not None:
             job.steps.close()
+        if job is not None and job.others:
+            self._drop(_OTHERS)
 
     @property
     def fetching(self) -> bool:
@@ -342,9 +382,11 @@ class Picture:
             ready = job is not None and job.state == state and job.share == 1.0
             if job is not None and job.state != state:
                 self._drop_job()
-            refinement.start(renderer, state, layered=ready)
+            refinement.start(renderer, state, layered=ready, held=self.samples_others)
             if refinement.layered:
                 self._draw_layers(renderer)
+            elif refinement.held:
+                self._draw_others(renderer)
         elif refinement is not None and _refinable(renderer) and _starts_empty(renderer):
             self._insert()
             for _ in refinement.other_tile_frames(renderer):
@@ -363,27 +405,77 @@ class Picture:
         if self._smoothing is not None:
             self._smoothing.begin(sample=self._refinement is not None and not self._refinement.plain)
 
-    def _lines_at_once(self, renderer: Any) -> list[Any]:
-        """Return the mappers whose samples are drawn at once next; none where they are drawn one after the other."""
+    def _lines_at_once(self, renderer: Any) -> tuple[list[Any], list[Any]]:
+        """Return actors whose samples are drawn at once next, and all else that is shown.
+
+        None where samples are drawn one after the other.
+        """
         refinement = self._refinement
-        if refinement is None or not refinement.untaken or self._lacks_memory:
-            return []
+        if refinement is None or not refinement.untaken or self._lacks_memory or not _starts_empty(renderer):
+            return [], []
         if self._smoothing is None or self._depth_of_field is not None or renderer.GetPass() is not None:
-            return []
-        lines = self._smoothing.only_lines() if _starts_empty(renderer) else []
-        return lines if all(one.layers_samples(renderer) for one in lines) else []
+            return [], []
+        found: tuple[list[Any], list[Any]] = self._smoothing.at_once()
+        return found
+
+    def _draw_others(self, renderer: Any) -> None:
+        """Draw samples of what is not drawn at once, each in a frame inside of the one that is about to be drawn."""
+        refinement, job = self._refinement, self._job
+        assert refinement is not None
+        assert job is not None
+        self._insert()
+        begun = time.perf_counter()
+        with _only(renderer, [self._prop, *job.others]):
+            for _ in refinement.other_frames(renderer, refinement.positions[job.sampled :]):
+                self._draw_inside(renderer)
+                job.sampled += 1
+                waited = job.sampled % SIDE == 0 and time.perf_counter() - begun > PATIENCE
+                if self._lacks_memory or (waited and not self.hurries):
+                    break
+        self._overlay.hold(renderer)
+        if self._lacks_memory:
+            self._drop_job()
+
+    def _take_other(self, context: WindowContext, slot: Slot, viewport: tuple[int, int, int, int]) -> None:
+        """Keep the picture of others as the next of their samples."""
+        assert self._job is not None
+        colour, depth = attachment(context, COLOUR), attachment(context, DEPTH)
+        size = viewport[2:]
+        if SAMPLES * size[0] * size[1] * (20 if colour.floats else 8) > MOST_BYTES:
+            self._lacks_memory = True
+            return
+        if _OTHERS not in slot.effects:
+            slot.effects[_OTHERS] = PictureEffects, PictureEffects(context.ctx)
+        others: PictureEffects = slot.effects[_OTHERS][1]
+        column, row = sample_squares(SIDE)[self._job.sampled]
+        corner = column * size[0], row * size[1]
+        try:
+            others.copy(colour, depth, viewport, size=(SIDE * size[0], SIDE * size[1]), corner=corner)
+        except EngineError:
+            self._lacks_memory = True
+
+    def _other_samples(self, renderer: Any) -> OtherSamples:
+        """Return the samples of others."""
+        from pvfiblets.engine.fiblets.sample_layers import OtherSamples
+
+        kept = context_of(renderer.GetRenderWindow()).slot(self._prop).effects[_OTHERS][1]
+        return OtherSamples(*kept.copied)
 
     def _draw_layers(self, renderer: Any) -> None:
         """Add up the layers of all samples, each in a frame inside of the one that the renderer is about to draw."""
         assert self._refinement is not None
         assert self._job is not None
+        assert self._job.steps is not None
         self._insert()
         frames = self._refinement.layer_frames(self._job.steps)
-        numbers = {mapper.GetAddressAsString(""): number for number, mapper in enumerate(self._job.lines)}
+        lines = self._job.lines
+        numbers = {line.GetMapper().GetAddressAsString(""): number for number, line in enumerate(lines)}
+        alone = _only(renderer, [self._prop, *lines]) if self._job.others else nullcontext()
         try:
-            for layer in frames:
-                self._smoothing.layer = lambda mapper, of=layer.of: of(numbers[mapper.GetAddressAsString("")])
-                self._draw_inside(renderer)
+            with alone:
+                for layer in frames:
+                    self._smoothing.layer = lambda mapper, of=layer.of: of(numbers[mapper.GetAddressAsString("")])
+                    self._draw_inside(renderer)
         except EngineError:
             self._lacks_memory = True
             self._refinement.draw_singly()
@@ -482,11 +574,14 @@ class Picture:
         if min(viewport[2:]) < 1:  # a tile of an enlarged picture in which the renderer has no part
             return
         slot, refinement, smoothing = context.slot(prop), self._refinement, self._smoothing
+        samples_others = self._inside and self.samples_others
         smooth = smoothing is not None and smoothing.pending
         taken = refinement is not None and self._shift == (0, 0) and not refinement.idle
         if smooth or taken or self.has_effects:
             with context.foreign():
-                self._paint_into(context, slot, viewport, smooth, taken)
+                self._paint_into(context, slot, viewport, smooth, taken and not samples_others)
+                if samples_others:
+                    self._take_other(context, slot, viewport)
         if refinement is not None and self._shift == (0, 0):
             refinement.put_back()
 
@@ -541,6 +636,22 @@ def _refinable(renderer: Any) -> bool:
     camera = renderer.GetActiveCamera()
     fixed = camera.GetUseExplicitProjectionTransformMatrix() or camera.GetUseOffAxisProjection()
     return not fixed and not renderer.GetRenderWindow().GetStereoRender()
+
+
+@contextmanager
+def _only(renderer: Any, props: list[Any]) -> Iterator[None]:
+    """Have a renderer show some of its props only; nobody is told, and no state changes."""
+    shown = renderer.GetViewProps()
+    kept = items_of(shown)
+    for prop in kept:
+        if prop not in props:
+            shown.RemoveItem(prop)
+    try:
+        yield
+    finally:
+        shown.RemoveAllItems()
+        for prop in kept:
+            shown.AddItem(prop)
 
 
 def _starts_empty(renderer: Any) -> bool:

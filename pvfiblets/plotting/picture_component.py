@@ -121,7 +121,7 @@ class PictureComponent:
     def refine(self) -> bool:
         """Draw one more accumulation sample of the plotter's idle frames, or more parts of sets larger than GPU memory.
 
-        In scenes of lines alone, all samples are drawn at once, part by part.
+        All samples of opaque fiblets are drawn at once, part by part, also beside opaque meshes and tubes.
 
         Windows on a screen, notebooks and pages do it by themselves, screenshots draw all that are left. It is for
         event loops of other kinds, which call it while nothing happens.

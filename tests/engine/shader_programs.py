@@ -322,6 +322,7 @@ def _others():
     screen("fiblets/gather/greatest", "fiblets/gather/slice_keys", "fiblets/hardware_raster/between", "screen/keys")
     screen("fiblets/layers/copy", needs={"TUBES": (("CROSS_LINE",),), "CROSS_LINE": ()})
     screen("fiblets/samples/entries", "fiblets/samples/layer", "fiblets/samples/claim", "fiblets/samples/of_set")
+    screen("fiblets/samples/begin", "fiblets/samples/others")
     screen("fiblets/parts/nearer", needs={"TUBES": (("CROSS_LINE",),), "CROSS_LINE": (), "EDGES": ()})
     screen("culling/coverage_dilate", "culling/pyramid_reduce")
     screen("regions/inspect", "regions/tally", always=("PEEL",))

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.engine.effects.sample_positions import sample_positions
+from pvfiblets.engine.effects.sample_positions import sample_positions, sample_squares
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets import sample_layers
 from pvfiblets.engine.fiblets.data import chunks
@@ -26,7 +26,7 @@ from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
 from tests.gl_calls import possible, recording
 
-from .refined_scene import Renders, real_default, shot  # noqa: F401 - a fixture
+from .refined_scene import Renders, grabbed, real_default, shot  # noqa: F401 - a fixture
 
 SIZE = (180, 140)
 
@@ -73,6 +73,24 @@ def write(plotter, _actor):
     plotter.add_text("above")
 
 
+def add_meshes(plotter, _actor):
+    """Add what hides lines and is hidden by them, in front of all and nowhere, lit and not."""
+    plotter.add_mesh(pv.Sphere(radius=30.0), color="tan")
+    plotter.add_mesh(pv.Cone(center=(-40.0, 0.0, 0.0), height=50.0, radius=25.0), color="red", lighting=False)
+    plotter.add_mesh(pv.Cube(center=(60.0, -20.0, 30.0), x_length=25.0, y_length=25.0, z_length=25.0), color="white")
+    plotter.add_mesh(pv.Sphere(radius=80.0), color="green").visibility = False
+
+
+def add_meshes_and_sets(plotter, actor):
+    add_meshes(plotter, actor)
+    add_sets(plotter, actor)
+
+
+def add_tubes(plotter, _actor):
+    """Add tubes, and lines with halos, whose samples are not drawn at once."""
+    plotter.add_spline_tubes([[(0.0, 0.0, -50.0), (0.0, 20.0, 0.0), (0.0, 0.0, 50.0)]], radius=6.0)
+    plotter.add_halo_lines([np.array([(-50.0, 0.0, 40.0), (50.0, 20.0, 40.0)])])
+
 
 def nothing(_plotter, _actor):
     """Leave the scene as it is."""
@@ -82,7 +100,7 @@ def shown(plotter, monkeypatch, *, singly=False):
     """Return a screenshot and the frames that it took, drawn anew."""
     with monkeypatch.context() as patch:
         if singly:
-            patch.setattr(Picture, "_lines_at_once", lambda *_: None)
+            patch.setattr(Picture, "_lines_at_once", lambda *_: ([], []))
         plotter.renderer.Modified()
         plotter.picture.antialias = "off"
         plotter.picture.antialias = "refined"
@@ -99,7 +117,10 @@ def off_by(one, other):
 
 @pytest.mark.parametrize(
     ("change", "parts"),
-    [(nothing, 1), (cut, 1), (cut, 12), (hide, 1), (look_close, 1), (write, 1), (add_sets, 1), (add_sets, 5)],
+    [
+        *[(nothing, 1), (cut, 1), (cut, 12), (hide, 1), (look_close, 1), (write, 1), (add_sets, 1), (add_sets, 5)],
+        *[(add_meshes, 1), (add_meshes, 12), (add_meshes_and_sets, 1), (add_meshes_and_sets, 5), (add_tubes, 1)],
+    ],
 )
 def test_the_picture_is_that_of_samples_one_after_the_other(scene, change, parts, monkeypatch):
     monkeypatch.setattr(sample_layers, "MOST_TEXELS", 16 * SIZE[0] * SIZE[1] // parts)
@@ -107,7 +128,7 @@ def test_the_picture_is_that_of_samples_one_after_the_other(scene, change, parts
     change(plotter, actor)
     plotter.show(auto_close=False)
     at_once, frames = shown(plotter, monkeypatch)
-    assert frames == 1
+    assert frames == 1 + (change in (add_meshes, add_meshes_and_sets, add_tubes))
     mean, frames = shown(plotter, monkeypatch, singly=True)
     assert frames >= 15
     assert np.sqrt((off_by(at_once, mean) ** 2.0).mean()) < 3.0, "lines beyond those of the layers are left out"
@@ -116,7 +137,7 @@ def test_the_picture_is_that_of_samples_one_after_the_other(scene, change, parts
         at_once = shown(plotter, monkeypatch)[0]
     apart = off_by(at_once, mean)
     assert apart.size > 5000
-    assert (apart > 1).mean() <= 0.02  # where points within a sample are left out
+    assert (apart > 1).mean() <= 0.025  # where points within a sample are left out
     assert apart.max() <= 48  # three samples
     actor.lighting = True
     actor.scalars = None
@@ -166,12 +187,13 @@ def test_points_that_lie_within_a_pixel_leave_the_picture_as_it_is(colours, monk
     plotter.close()
 
 
-def add_mesh(plotter, _actor):
-    plotter.add_mesh(pv.Sphere(radius=30.0))
+def add_glass(plotter, _actor):
+    plotter.add_mesh(pv.Sphere(radius=30.0), opacity=0.5)
 
 
-def add_tubes(plotter, _actor):
-    plotter.add_spline_tubes([[(0.0, 0.0, -50.0), (0.0, 0.0, 50.0)]])
+def add_wires(plotter, _actor):
+    """Add lines of VTK, which are thinner without multisampling."""
+    plotter.add_mesh(pv.Sphere(radius=30.0), show_edges=True)
 
 
 def thicken(_plotter, actor):
@@ -190,7 +212,7 @@ def occlude(_plotter, actor):
     actor.ambient_occlusion = True
 
 
-@pytest.mark.parametrize("change", [add_mesh, add_tubes, thicken, fade, keep_outside, occlude])
+@pytest.mark.parametrize("change", [add_glass, add_wires, thicken, fade, keep_outside, occlude])
 def test_other_pictures_have_one_sample_after_the_other(scene, change, monkeypatch):
     plotter, actor = scene
     change(plotter, actor)
@@ -265,8 +287,8 @@ def test_samples_lie_where_those_one_after_the_other_do():
     squares = np.stack(np.meshgrid(np.arange(4), np.arange(4)), axis=-1).reshape(-1, 2)
     found = (squares + 0.5 + places) / 4.0 - 0.5
     wanted = np.array(sample_positions(16))
-    order = [np.lexsort(points.round(4).T) for points in (found, wanted)]
-    np.testing.assert_allclose(found[order[0]], wanted[order[1]], atol=1e-5)
+    place = [4 * row + column for column, row in sample_squares(4)]
+    np.testing.assert_allclose(found[place], wanted, atol=1e-5)
     assert np.abs(places).max() < float(re.search(r"ASIDE = (0\.\d+)", text)[1])
     assert np.abs(found).max() <= 0.5  # or culling would have to look beyond the picture
 
@@ -288,7 +310,7 @@ def test_an_interrupt_leaves_the_picture_so_far_and_the_next_one_goes_on(scene, 
     plain = shown_plain(plotter)
     monkeypatch.setattr(sample_layers, "MOST_TEXELS", 16 * SIZE[0] * SIZE[1] // 4)
     if not at_once:
-        monkeypatch.setattr(Picture, "_lines_at_once", lambda *_: None)
+        monkeypatch.setattr(Picture, "_lines_at_once", lambda *_: ([], []))
     reach, count = Finishing.reach, 2
 
     def interrupted(self, done):
@@ -306,6 +328,69 @@ def test_an_interrupt_leaves_the_picture_so_far_and_the_next_one_goes_on(scene, 
         np.testing.assert_array_equal(shot(plotter), plain)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     assert np.percentile(off_by(shot(plotter), finished), 99) <= 1.0
+
+
+@pytest.mark.usefixtures("interruptible")
+def test_an_interrupt_while_meshes_are_sampled_leaves_the_plain_picture(scene, monkeypatch):
+    plotter, actor = scene
+    add_meshes(plotter, actor)
+    plotter.show(auto_close=False)
+    finished, _ = shown(plotter, monkeypatch)
+    plain = shown_plain(plotter)
+
+    def interrupted(self, done):
+        signal.raise_signal(signal.SIGINT)
+        assert done == 8, "of the work, meshes are a half"
+        return False
+
+    plotter.picture.antialias = "refined"
+    plotter.render()
+    with monkeypatch.context() as patch:
+        patch.setattr(Finishing, "reach", interrupted)
+        with pytest.warns(RuntimeWarning, match="stopped after 0 of 16 samples"):
+            np.testing.assert_array_equal(shot(plotter), plain)
+    np.testing.assert_array_equal(shot(plotter), finished)
+
+
+def test_meshes_are_sampled_a_few_at_a_time_where_somebody_waits(scene, monkeypatch):
+    plotter, actor = scene
+    add_meshes(plotter, actor)
+    plotter.show(auto_close=False)
+    finished, _ = shown(plotter, monkeypatch)
+    monkeypatch.setattr("pvfiblets.mappers.picture.PATIENCE", 0.0)
+    props = [plotter.renderer.GetViewProps().GetItemAsObject(i) for i in range(6)]
+    plotter.picture.antialias = "off"
+    plotter.picture.antialias = "refined"
+    plotter.render()
+    renders, seen = Renders(plotter), []
+    while plotter.picture.refine():
+        seen += [grabbed(plotter)] * bool(renders.since())
+    assert len(seen) == 4, "of four samples each"
+    for picture in seen:
+        np.testing.assert_array_equal(picture, seen[0])
+    np.testing.assert_array_equal(grabbed(plotter), finished)
+    assert props == [plotter.renderer.GetViewProps().GetItemAsObject(i) for i in range(6)]
+    costs = [one["name"] for one in plotter.picture._picture().explain()["buffers"]]
+    assert "samples of others" not in costs
+
+
+@pytest.mark.parametrize("lacking", ["bytes", "textures"])
+def test_where_memory_lacks_for_samples_of_meshes_all_come_one_after_the_other(scene, lacking, monkeypatch):
+    plotter, actor = scene
+    add_meshes(plotter, actor)
+    plotter.show(auto_close=False)
+    mean, _ = shown(plotter, monkeypatch, singly=True)
+
+    def fails(*_args, **_named):
+        raise EngineError("no memory")
+
+    if lacking == "bytes":
+        monkeypatch.setattr("pvfiblets.mappers.picture.MOST_BYTES", 1000)
+    else:
+        monkeypatch.setattr("pvfiblets.engine.effects.picture.PictureEffects.copy", fails)
+    found, frames = shown(plotter, monkeypatch)
+    assert frames >= 16
+    np.testing.assert_array_equal(found, mean)
 
 
 def shown_plain(plotter):
@@ -360,7 +445,7 @@ def test_an_actor_in_two_renderers_has_the_samples_of_each(lines, parts, monkeyp
     def finished(singly):
         with monkeypatch.context() as patch:
             if singly:
-                patch.setattr(Picture, "_lines_at_once", lambda *_: [])
+                patch.setattr(Picture, "_lines_at_once", lambda *_: ([], []))
             for column in (0, 1):
                 plotter.subplot(0, column)
                 plotter.picture.antialias = "off"

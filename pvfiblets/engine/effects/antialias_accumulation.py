@@ -35,6 +35,13 @@ class Accumulation(PicturePasses):
         self._copy(colour, viewport, sums.size, "sums", mixed=self.samples > 0, shares=shares, alike=alike)
         self.samples = 1 if shares is not None else self.samples + 1
 
+    def begin(self, sums: moderngl.Texture) -> None:
+        """Begin anew with sums that are there."""
+        self._texture("sums", sums.size, 4, "f4")
+        with self._plain_state():
+            self._pass("mean", self._framebuffer(("sums",)), {"colours": sums}, {"shift": (0, 0), "share": 1.0})
+        self.samples = 1
+
     def show(self, target: Attachment, viewport: Viewport) -> None:
         """Draw the mean into a part of an attachment; all samples of a pixel get the same."""
         self._show("sums", 1.0 / self.samples, target, viewport)

@@ -75,6 +75,11 @@ class PictureEffects(PicturePasses):
             self._pass("copy", target, outside, uniforms, features)
         self._corner = corner
 
+    @property
+    def copied(self) -> tuple[moderngl.Texture, moderngl.Texture]:
+        """Colours and depths of the copy."""
+        return self._textures["colours"], self._textures["depths"]
+
     def take_in(self, things: Iterable[SeenThrough]) -> None:
         """Give the copy the depths of see-through things, where these are nearer."""
         with self._plain_state():

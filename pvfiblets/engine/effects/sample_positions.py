@@ -22,7 +22,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["CENTRED", "MOST", "energy_distance", "sample_positions"]
+__all__ = ["CENTRED", "MOST", "energy_distance", "sample_positions", "sample_squares"]
 
 MOST = 256  # samples: with 256, the error is below one level of eight bits at nearly all edges
 
@@ -52,6 +52,14 @@ def sample_positions(n: int) -> tuple[tuple[float, float], ...]:
         points = np.clip(points + 0.5 * (1.0 - step / STEPS) * downhill, -0.5, 0.5)
     middle = [] if fixed < 0 else [(0.0, 0.0)]
     return tuple(_ordered(points if fixed < 0 else np.delete(points, fixed, axis=0)) + middle)
+
+
+def sample_squares(side: int) -> tuple[tuple[int, int], ...]:
+    """Return a square of a pixel's side x side, column and row, for each of as many samples: one a square, by rows."""
+    places = np.array(sample_positions(side * side))
+    rows = np.argsort(places[:, 1], kind="stable").reshape(side, side)
+    rows = np.take_along_axis(rows, np.argsort(places[rows, 0], axis=1, kind="stable"), axis=1)
+    return tuple((int(at) % side, int(at) // side) for at in np.argsort(rows.ravel()))
 
 
 def energy_distance(points: npt.ArrayLike) -> float:

@@ -4,7 +4,8 @@ Fiblets are decoded once for all samples of a pixel, which lie side by side in a
 (``FEATURE_SUBSAMPLES``): each has a depth test of its own. The samples of a pixel that show the same fiblet are lit
 once: layer k holds each pixel's line with the k-th most samples, and their share of the pixel. Several sets, and the
 parts of a set that is drawn in parts, are drawn one after the other into the same samples: what earlier ones hide of
-later ones is culled.
+later ones is culled. All else in the scene, such as meshes, is drawn before, sample by sample (`OtherSamples`): lines
+begin with its depths, and what they leave of its colours is added up.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ from .style import FibletStyle
 if TYPE_CHECKING:
     from .pipelines import ComputePipeline, DrawRequest
 
-__all__ = ["LAYERS", "SAMPLES", "Layer", "SampleLayers", "SampledLines", "draw_samples"]
+__all__ = ["LAYERS", "SAMPLES", "SIDE", "Layer", "OtherSamples", "SampleLayers", "SampledLines", "draw_samples"]
 
 SIDE = 4
 SAMPLES = SIDE * SIDE
@@ -46,7 +47,9 @@ WHOLE = 2**16
 MOST_TEXELS = 2**23
 """Samples that are kept at a time: 24 bytes each, 28 of several sets."""
 
-MOST_SETS = 2**15
+MOST_SETS = 2**15 - 1
+
+NO_SET = MOST_SETS
 
 Rectangle = tuple[int, int, int, int]
 
@@ -74,6 +77,21 @@ class SampledLines:
 
 
 @dataclass(frozen=True)
+class OtherSamples:
+    """Samples of all in a scene but the lines: 4 x 4 pictures side by side, each of one sample of every pixel.
+
+    Attributes
+    ----------
+    colours : moderngl.Texture
+    depths : moderngl.Texture
+        Window depths, float32.
+    """
+
+    colours: moderngl.Texture
+    depths: moderngl.Texture
+
+
+@dataclass(frozen=True)
 class Layer:
     """A line of each pixel.
 
@@ -83,10 +101,14 @@ class Layer:
         Of each pixel, in parts of `WHOLE`, in 17 bits; 0 where the layer has none.
     of : callable
         Returns the picture of what it shows of a set, by number. It holds until that of another set is asked for.
+    others : moderngl.Texture, optional
+        What `OtherSamples` add to each pixel where no line shows. Without, samples that show no line have a share of
+        the first layer.
     """
 
     shares: moderngl.Texture
     of: Callable[[int], GBuffer]
+    others: moderngl.Texture | None = None
 
 
 class SampleLayers:
@@ -106,16 +128,21 @@ class SampleLayers:
         self._targets: list[PictureTarget] = []
         self._sets = 1
         self._depths: tuple[moderngl.Texture, moderngl.Framebuffer] | None = None
+        self._rest: tuple[moderngl.Texture, moderngl.Framebuffer] | None = None  # of others
         self._shown = Query(gl, "samples")
         self._held = ExitStack()  # until all is drawn; a generator may be closed when the context is gone
 
-    def draw(self, sets: Sequence[Sequence[SampledLines]]) -> Iterator[float | Layer]:
+    def draw(
+        self, sets: Sequence[Sequence[SampledLines]], others: OtherSamples | None = None
+    ) -> Iterator[float | Layer]:
         """Draw once, part by part; yield the share of the work that is done after each, at last the layers.
 
         Parameters
         ----------
         sets : sequence of sequence of SampledLines
             The parts of each set. Of two lines at one depth the one of the later set or part shows.
+        others : OtherSamples, optional
+            Of the picture in which the lines lie.
 
         Raises
         ------
@@ -131,10 +158,20 @@ class SampleLayers:
         samples = GBuffer(self._ctx, _times(SIDE, size))
         self._held.callback(samples.release)
         entries, listed = self._target(size, 4)
-        of_sets, claimed = self._target(samples.size, 1) if len(sets) > 1 else (samples.owner, None)
+        claims = len(sets) > 1 or others is not None
+        of_sets, claimed = self._target(samples.size, 1) if claims else (samples.owner, None)
+        if others is not None:
+            depths = self._ctx.framebuffer([samples.depth])
+            self._held.callback(depths.release)
+            self._rest = _target(self._ctx, whole, 4, "f4")
+            self._add_others(others, None, (0, 0), whole)
         steps = len(corners) * len(lines)
         for part, corner in enumerate(corners):
-            adds = False
+            if claimed is not None:
+                self._gl.clear_integers(claimed, (NO_SET,))
+            if others is not None:
+                self._begin_with(others, depths, corner, whole)
+            adds = others is not None
             for step, (number, one) in enumerate(lines, part * len(lines)):
                 last = step + 1 == (part + 1) * len(lines)
                 if _meet(one.rectangle, (*corner, *size)) or (last and not adds):
@@ -147,11 +184,45 @@ class SampleLayers:
                 if not last:
                     yield (step + 1) / steps
             with self._gl.framebuffers_kept():
-                self._sort(whole, samples, of_sets, entries, listed, corner)
+                self._sort(whole, samples, of_sets, entries, listed, corner, others)
+            if others is not None:
+                self._add_others(others, of_sets, corner, whole)
             yield (part + 1) / len(corners)
         self._held.close()
+        rest = None if self._rest is None else self._rest[0]
         for target in self._targets:
-            yield Layer(target.picture.owner, partial(self._of_set, target.picture))
+            yield Layer(target.picture.owner, partial(self._of_set, target.picture), rest)
+            rest = None
+
+    def _begin_with(
+        self, others: OtherSamples, depths: moderngl.Framebuffer, corner: tuple[int, int], whole: tuple[int, int]
+    ) -> None:
+        """Have samples of a part of the picture begin with the depths of others."""
+        program, array = self._programs.screen("fiblets/samples/begin.frag", [])
+        _use(program, {"other_depths": others.depths})
+        program["corner"], program["picture"] = corner, whole
+        self._ctx.scissor = None
+        self._ctx.enable_only(moderngl.NOTHING)
+        with self._gl.framebuffers_kept():
+            depths.use()
+            array.render(moderngl.TRIANGLES, vertices=3)
+
+    def _add_others(
+        self, others: OtherSamples, of_sets: moderngl.Texture | None, corner: tuple[int, int], whole: tuple[int, int]
+    ) -> None:
+        """Add up others' colours where no line shows: in a part of the picture, or in one without lines."""
+        assert self._rest is not None
+        program, array = self._programs.screen("fiblets/samples/others.frag", [])
+        _use(program, {"other_colours": others.colours} | ({} if of_sets is None else {"drawn_set": of_sets}))
+        program["picture"], program["corner"], program["lines"] = whole, corner, int(of_sets is not None)
+        size = whole if of_sets is None else (of_sets.width // SIDE, of_sets.height // SIDE)
+        self._ctx.scissor = None
+        self._ctx.enable_only(moderngl.NOTHING)
+        with self._gl.framebuffers_kept():
+            target = self._rest[1]
+            target.use()
+            target.viewport = (*corner, *size)
+            array.render(moderngl.TRIANGLES, vertices=3)
 
     def _target(self, size: tuple[int, int], components: int) -> tuple[moderngl.Texture, moderngl.Framebuffer]:
         """Return a texture that is held until all is drawn, and what draws into it."""
@@ -179,6 +250,7 @@ class SampleLayers:
         entries: moderngl.Texture,
         listed: moderngl.Framebuffer,
         corner: tuple[int, int],
+        others: OtherSamples | None,
     ) -> None:
         """Put the samples of one part of the picture into layers."""
         self._ctx.enable_only(moderngl.NOTHING)
@@ -186,15 +258,16 @@ class SampleLayers:
         program, array = self._programs.screen("fiblets/samples/entries.frag", [])
         drawn = {"drawn_depth": samples.depth, "drawn_ids": samples.ids, "drawn_set": sets}
         _use(program, drawn)
-        program["several"] = int(self._sets > 1)
+        program["claimed"] = int(self._sets > 1 or others is not None)
         listed.use()
         array.render(moderngl.TRIANGLES, vertices=3)
         program, array = self._programs.screen("fiblets/samples/layer.frag", [])
         _use(program, {"entries": entries, "drawn_position": samples.position, **drawn})
-        program["corner"], program["several"] = corner, int(self._sets > 1)
+        program["corner"], program["claimed"] = corner, int(self._sets > 1 or others is not None)
+        program["others"] = int(others is not None)
         for number in range(LAYERS):
             if number == len(self._targets):
-                self._targets.append(self._made(size))
+                self._targets.append(self._made(size, others))
             program["layer"], program["layers"] = number, LAYERS
             target = self._targets[number].framebuffer
             target.use()
@@ -222,18 +295,19 @@ class SampleLayers:
             array.render(moderngl.TRIANGLES, vertices=3)
         return of_set
 
-    def _made(self, size: tuple[int, int]) -> PictureTarget:
+    def _made(self, size: tuple[int, int], others: OtherSamples | None) -> PictureTarget:
         target = PictureTarget(self._ctx, size, None, edges=False)
-        # Around what is drawn, all samples of a pixel show nothing.
-        for attachment, value in enumerate((EMPTY, 0 if self._targets else WHOLE)):
+        # Around what is drawn, all samples of a pixel show nothing, or others.
+        for attachment, value in enumerate((EMPTY, WHOLE if not self._targets and others is None else 0)):
             self._gl.clear_integers(target.framebuffer, (value,), attachment)
         return target
 
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory."""
-        depths = 0 if self._depths is None else 4 * self._depths[0].size[0] * self._depths[0].size[1]
-        return sum(target.picture.nbytes for target in self._targets) + depths
+        kept = [(4, self._depths), (16, self._rest)]
+        more = sum(texel * held[0].width * held[0].height for texel, held in kept if held is not None)
+        return sum(target.picture.nbytes for target in self._targets) + more
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
@@ -241,9 +315,9 @@ class SampleLayers:
         self._shown.release()
         while self._targets:
             self._targets.pop().release()
-        for texture in self._depths or ():
-            texture.release()
-        self._depths = None
+        for thing in (*(self._depths or ()), *(self._rest or ())):
+            thing.release()
+        self._depths = self._rest = None
 
 
 def draw_samples(ctx: moderngl.Context, pipeline: ComputePipeline, wanted: DrawRequest) -> None:
@@ -271,11 +345,11 @@ def _use(program: moderngl.Program, textures: dict[str, moderngl.Texture]) -> No
 
 
 def _target(
-    ctx: moderngl.Context, size: tuple[int, int], components: int
+    ctx: moderngl.Context, size: tuple[int, int], components: int, dtype: str = "u4"
 ) -> tuple[moderngl.Texture, moderngl.Framebuffer]:
-    """Return a texture of words, and what draws into it."""
+    """Return a texture, and what draws into it."""
     try:
-        texture = ctx.texture(size, components, dtype="u4")
+        texture = ctx.texture(size, components, dtype=dtype)
         texture.filter = moderngl.NEAREST, moderngl.NEAREST
         return texture, ctx.framebuffer([texture])
     except moderngl.Error as error:

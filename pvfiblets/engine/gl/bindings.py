@@ -94,7 +94,7 @@ LAYER_COPY = Scope("copies of layers", {"depth": 12, "ids": 13, "position": 14, 
 SAMPLE_LAYER = Scope(
     "layers of samples",
     {"drawn_owner": 12, "entries": 13, "drawn_depth": 14, "drawn_ids": 15, "drawn_position": 16, "shares": 17,
-     "drawn_set": 18},
+     "drawn_set": 18, "other_colours": 19, "other_depths": 20},
 )
 NEARER_PART = Scope(
     "the nearer of two parts",

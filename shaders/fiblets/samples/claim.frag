@@ -1,4 +1,4 @@
-// The set of each sample (fiblets/samples/entries.frag): this one where a fiblet of it has taken the sample.
+// The set of each sample (fiblets/samples/entries.frag): this one where a fiblet of it has taken the sample. Before, it is 0x7FFF.
 //
 //   drawn_owner   fiblets of this set; 0xFFFFFFFF where it does not show
 //   set           its number

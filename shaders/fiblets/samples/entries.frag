@@ -2,9 +2,10 @@
 //
 // Samples of a streamline that bends within the pixel count as lines of their own, by the tangents that their light depends on.
 //
-//   drawn_depth   by sample (FEATURE_SUBSAMPLES), 4 x 4 texels a pixel; 0xFFFFFFFF where no line is
+//   drawn_depth   by sample (FEATURE_SUBSAMPLES), 4 x 4 texels a pixel
 //   drawn_ids     streamlines and tangents
-//   drawn_set     sets, where there are several
+//   drawn_set     sets, 0x7FFF where no line is, if samples are `claimed` (fiblets/samples/claim.frag): there are several, or other
+//                 things than lines; else no line is where the depth is 0xFFFFFFFF
 //   entries       16 bytes, from the lowest, that of no line first, then those with most samples: 16 (samples - 1) + the
 //                 sample's number
 
@@ -13,7 +14,7 @@
 uniform usampler2D drawn_depth;
 uniform usampler2D drawn_ids;
 uniform usampler2D drawn_set;
-uniform int several;
+uniform int claimed;
 out uvec4 entries;
 
 const int ALIKE = 3000;   // of the 32767 steps of a tangent's packed halves
@@ -36,11 +37,12 @@ void main() {
     uint differing = 0u, none = 0u;
     for (int i = 0; i < 16; ++i) {
         ivec2 sample_at = at + ivec2(i & 3, i >> 2);
-        bool empty = texelFetch(drawn_depth, sample_at, 0).x == 0xFFFFFFFFu;
+        uint set = claimed != 0 ? texelFetch(drawn_set, sample_at, 0).x : 0u;
+        bool empty = claimed != 0 ? set == 0x7FFFu : texelFetch(drawn_depth, sample_at, 0).x == 0xFFFFFFFFu;
         uvec2 ids = empty ? uvec2(0u) : texelFetch(drawn_ids, sample_at, 0).xy;
         lines[i] = ids.x;
         tangents[i] = ids.y;
-        sets[i] = several != 0 && !empty ? texelFetch(drawn_set, sample_at, 0).x : 0u;
+        sets[i] = empty ? 0u : set;
         none |= empty ? 1u << i : 0u;
         differing |= (lines[i] ^ lines[0]) | (sets[i] ^ sets[0]) | (alike(tangents[i], tangents[0]) ? 0u : 1u);
     }
