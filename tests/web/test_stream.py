@@ -231,6 +231,7 @@ def rest(stream, streamer):
 def refined(plotter, monkeypatch):
     """A plotter with fiblets whose samples are drawn one by one, and a list that grows with its frames."""
     monkeypatch.delenv("PVFIBLETS_ANTIALIAS")
+    monkeypatch.setattr(Pace, "untried", False)  # frames that are drawn in advance depend on time
     plotter.add_fiblets([[(0, 0, 0), (9, 4, 0)], [(0, 5, 0), (9, 1, 2)]], color="white", lighting=False)
     plotter.picture.antialias_seconds = 1e6
     frames = []
