@@ -146,23 +146,28 @@ def test_edges_run_along_the_mean_streamline(plotter, atlas):
     actor = plotter.add_fiblets(lines)
     with pytest.warns(UserWarning, match="1 of 4 edges have no streamlines"):
         graph = plotter.add_connectome(WEIGHTS, atlas, edges="streamlines", streamlines=actor)
-    tubes = graph.edge_actor.tubes
-    for edge, (pair, (_, bow)) in enumerate(zip(PAIRS, [*made, (None, centres[[2, 3]])], strict=True)):
-        nodes = tubes.segments[tubes.tubes == edge]
-        path = tubes.points[np.append(nodes[:, 0], nodes[-1, 1])]
+    bows = [*(bow for _, bow in made), centres[[2, 3]]]
+    for pair, bow, path in zip(PAIRS, bows, paths(graph), strict=True):
         np.testing.assert_allclose(path[[0, -1]], centres[pair], atol=1e-4)
         mean = bow + np.sin(np.pi * np.linspace(0.0, 1.0, len(bow)))[:, None] / 3.0
         gaps = np.linalg.norm(path[:, None] - mean, axis=2).min(axis=1)
-        assert gaps.max() < 1.5, edge  # between 30 places on a bow of about 40 mm
+        assert gaps.max() < 1.5  # between 30 places on a bow of about 40 mm
     matrix = compress(lines, exact=True).connectome(atlas)
-    graph = plotter.add_connectome(matrix, matrix_places(centres), edges="streamlines", streamlines=lines)
-    assert graph.pair_weights.tolist() == [3.0, 3.0, 3.0]
-    graph.edges = "lines"
-    assert graph.edge_actor.fiblets.decompress().counts.tolist() == [2, 2, 2]
+    near = plotter.add_connectome(matrix, centres, edges="streamlines", streamlines=lines)
+    away = plotter.add_connectome(matrix, centres + 2.0, edges="streamlines", streamlines=lines)
+    assert away.pair_weights.tolist() == [3.0, 3.0, 3.0]
+    for one, other in zip(paths(near), paths(away), strict=True):
+        t = np.linspace(0.0, 1.0, len(one))[:, None]
+        np.testing.assert_allclose(other - one, 2.0 * ((1 - t) ** 4 + t**4) * np.ones(3), atol=1e-4)
+    away.edges = "lines"
+    assert away.edge_actor.fiblets.decompress().counts.tolist() == [2, 2, 2]
 
 
-def matrix_places(centres):
-    return centres + 1.0
+def paths(graph):
+    """Return the points of each tube in their order."""
+    tubes = graph.edge_actor.tubes
+    runs = [tubes.segments[tubes.tubes == edge] for edge in range(tubes.n_tubes)]
+    return [tubes.points[np.append(run[:, 0], run[-1, 1])] for run in runs]
 
 
 def test_kinds_change_in_their_own_view_and_keep_colours(atlas):

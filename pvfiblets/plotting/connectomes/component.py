@@ -124,7 +124,7 @@ class ConnectomesComponent:
             How nodes are drawn; meshes are the surfaces of the labels.
         edges : {"tubes", "lines", "streamlines", None}, default: "tubes"
             How edges are drawn: straight tubes, straight lines, or tubes along the mean of the streamlines that
-            connect two nodes, from node to node.
+            connect two nodes, with its ends bent to the nodes.
         threshold : float, default: 0
             Edges whose absolute weight is less are not shown.
         names : path, mapping, LabelTable or sequence of str, optional

@@ -22,6 +22,7 @@ NODES = ("spheres", "meshes", None)
 EDGES = ("tubes", "lines", "streamlines", None)
 THICKNESS = 0.01  # radius of the strongest edge, of the diagonal of the nodes' bounds
 LINE_WIDTH = 3.0  # pixels
+BEND = 4  # power of the share along a streamline by which its end is moved to its node
 SMOOTHING = 0.5  # voxels by which a surface of labels may be moved
 TOLERANCE = 0.002  # of a pick, of the window's diagonal
 WEIGHT = "weight"
@@ -291,10 +292,8 @@ class ConnectomeGraph:
             if self._streamlines is None:
                 raise ValueError("edges='streamlines' needs streamlines; give streamlines=, such as a FibletSet")
             means, counts = mean_streamlines(self._graph, self._streamlines)
-            lines = [
-                np.concatenate([pair[:1], mean, pair[1:]]) if count else pair
-                for pair, mean, count in zip(ends, means, counts, strict=True)
-            ]
+            ways = zip(ends, means, counts, strict=True)
+            lines = [bent(mean, *pair) if count else pair for pair, mean, count in ways]
             if not counts.all():
                 warnings.warn(
                     f"{np.count_nonzero(counts == 0)} of {len(counts)} edges have no streamlines; they are straight",
@@ -322,6 +321,13 @@ class ConnectomeGraph:
 
     def _colours(self) -> np.ndarray:
         return self._table.rows(self._graph.labels)
+
+
+def bent(line: np.ndarray, start: np.ndarray, stop: np.ndarray) -> np.ndarray:
+    """Return a line whose ends are moved to two places, and its middle by a 16th of that."""
+    t = np.linspace(0.0, 1.0, len(line))[:, None]
+    moved: np.ndarray = line + (1.0 - t) ** BEND * (start - line[0]) + t**BEND * (stop - line[-1])
+    return moved
 
 
 def _table(names: Any, graph: Graph) -> LabelTable:
