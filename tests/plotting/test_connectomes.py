@@ -198,6 +198,10 @@ def test_removal_takes_all_away(plotter):
     assert list(plotter.connectomes) == [other]
     assert other.edge_actor.shown.tolist() == [False, True, True, False]
     other.remove()
+    other.remove()
+    assert other.pick_at(100, 100) is None
+    with pytest.raises(RuntimeError, match="'one' was removed"):
+        other.nodes = None
     assert set(plotter.actors) == before
     assert not plotter.scalar_bars.keys()
     assert len(plotter.connectomes) == len(plotter.spline_tubes) == 0

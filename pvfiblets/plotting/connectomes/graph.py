@@ -185,6 +185,8 @@ class ConnectomeGraph:
         ConnectomePick or None
             ``None`` where nothing of the connectome is, or another actor that can be picked is in front of it.
         """
+        if self._renderer is None:
+            return None
         picker = vtkCellPicker()
         picker.SetTolerance(TOLERANCE)
         picker.Pick(x, y, 0.0, self._renderer)
@@ -214,20 +216,23 @@ class ConnectomeGraph:
     def is_shown(self) -> bool:
         """Whether the plotter still has it."""
         actors = [actor for actor in (self.node_actor, self.edge_actor) if actor is not None]
-        alone = self._renderer is not None and not actors
-        return alone or any(self._renderer.HasViewProp(actor) for actor in actors)
+        there = any(self._renderer.HasViewProp(actor) for actor in actors)
+        return there or (self._renderer is not None and not actors)
 
     def remove(self) -> None:
         """Take nodes, edges and the scalar bar out of the plotter."""
-        with self._in_its_view():
-            self._take_away(self.node_actor)
-            self._take_away(self.edge_actor)
+        if self._renderer is not None:
+            with self._in_its_view():
+                self._take_away(self.node_actor)
+                self._take_away(self.edge_actor)
         self.node_actor = self.edge_actor = self._renderer = None
 
     @contextmanager
     def _in_its_view(self) -> Iterator[dict[str, Any]]:
         """Make its renderer the active one for a while; give arguments of what is added there."""
         # PyVista also removes scalar bars of the active renderer only.
+        if self._renderer is None:
+            raise RuntimeError(f"{self.name!r} was removed from its plotter; add the connectome again")
         renderers = self._plotter.renderers
         before = renderers.index_to_loc(renderers.active_index)
         own = renderers.index_to_loc(list(renderers).index(self._renderer))
@@ -287,20 +292,19 @@ class ConnectomeGraph:
         if edges is None or not len(self.pairs):
             return None
         ends = self.positions[self.pairs]
-        lines = list(ends)
+        found = Streamlines(ends.reshape(-1, 3), 2 * np.arange(len(ends) + 1))
         if edges == "streamlines":
             if self._streamlines is None:
                 raise ValueError("edges='streamlines' needs streamlines; give streamlines=, such as a FibletSet")
             means, counts = mean_streamlines(self._graph, self._streamlines)
             ways = zip(ends, means, counts, strict=True)
-            lines = [bent(mean, *pair) if count else pair for pair, mean, count in ways]
+            found = Streamlines.from_list(bent(mean, *pair) if count else pair for pair, mean, count in ways)
             if not counts.all():
                 warnings.warn(
                     f"{np.count_nonzero(counts == 0)} of {len(counts)} edges have no streamlines; they are straight",
                     UserWarning,
                     stacklevel=6,
                 )
-        found = Streamlines.from_list(lines)
         found.per_streamline = {WEIGHT: self.pair_weights}
         return found
 
