@@ -41,6 +41,7 @@ PICTURES: dict[str, tuple[tuple[str, str], ...]] = {
     "pictures/density": (("25_density", "density"),),
     "pictures/bundles": (("27_bundles_and_matrix", "bundles"),),
     "pictures/bundles_numbers": (("27_bundles_and_matrix", "bundles_numbers"),),
+    "pictures/connectome": (("29_connectome", "connectome"),),
 }
 
 

@@ -101,12 +101,15 @@ def _adder(component: Any) -> str:
 
 def _class_of_adder(component: Any, imports: set[str]) -> str:
     signature = inspect.signature(component.add)
-    source = f"{component.__name__.removesuffix('Component')}Source"
-    own = signature.parameters["source"].annotation
-    imports.add(f"from {component.__module__} import {own} as {source}")
     actor = signature.return_annotation
     imports.add(f"from {_home(component, actor)} import {actor}")
-    parts = ["self", f"source: {source}", "*"]
+    parts = ["self"]
+    for name, one in signature.parameters.items():
+        if name != "self" and one.kind is one.POSITIONAL_OR_KEYWORD:  # data; the module has its type
+            kind = f"{component.__name__.removesuffix('Component')}{name.title()}"
+            imports.add(f"from {component.__module__} import {one.annotation} as {kind}")
+            parts.append(f"{name}: {kind}")
+    parts.append("*")
     for name, one in signature.parameters.items():
         if one.kind is one.KEYWORD_ONLY:
             default = f'"{one.default}"' if isinstance(one.default, str) else repr(one.default)

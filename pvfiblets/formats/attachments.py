@@ -66,14 +66,14 @@ def values_for(
     suffix = Path(text).suffix.lower()
     if suffix == ".tsf":
         return "per_point", _scalars_of(counts, text, timestamp_in(space or {}))
-    return _place(counts, text, _read_rows(text, suffix))
+    return _place(counts, text, read_rows(text, suffix))
 
 
 def read_values(path: str | PathLike[str]) -> Array:
     """Read one number per row of a ``.tsf``, ``.npy``, ``.txt`` or ``.csv`` file, whatever they belong to."""
     text = fspath(path)
     suffix = Path(text).suffix.lower()
-    values = read_scalars(text)[0] if suffix == ".tsf" else _read_rows(text, suffix)
+    values = read_scalars(text)[0] if suffix == ".tsf" else read_rows(text, suffix)
     if values.ndim == 2 and 1 in values.shape:
         values = values.reshape(-1)
     if values.ndim != 1:
@@ -88,7 +88,8 @@ def numbers_or_name(given: str | None) -> Any:
     return read_values(given)
 
 
-def _read_rows(path: str, suffix: str) -> Array:
+def read_rows(path: str, suffix: str) -> Array:
+    """Read the rows of numbers of a ``.npy``, ``.txt`` or ``.csv`` file."""
     if suffix == ".npy":
         return _read_npy(path)
     if suffix in (".txt", ".csv"):

@@ -191,7 +191,6 @@ def tube_surface(lines: LineData) -> vtkPolyData:
         rows_of = {name: column[at] for name, column in columns.items()}
         balls = LineData(shape.points[at], np.arange(len(at) + 1), lines.ids[alone], rows_of)
         given = balls.to_polydata(vertices=True)
-        given.GetPointData().AddArray(_named(STREAMLINE, balls.ids))
         given.GetPointData().SetActiveScalars(RADIUS)
         source, glyph = vtkSphereSource(), vtkGlyph3D()
         source.SetRadius(1.0)
@@ -201,6 +200,8 @@ def tube_surface(lines: LineData) -> vtkPolyData:
         glyph.SetInputData(given)
         glyph.SetScaleModeToScaleByScalar()
         glyph.Update()
+        many = glyph.GetOutput().GetNumberOfCells() // len(balls.ids)
+        glyph.GetOutput().GetCellData().AddArray(_named(STREAMLINE, np.repeat(balls.ids, many)))
         parts.append(glyph.GetOutput())
     if len(parts) == 1:
         whole = parts[0]

@@ -3,10 +3,11 @@
 ``plotter.add_fiblets(...)``, ``plotter.fiblets``, ``plotter.add_spline_tubes(...)``,
 ``plotter.spline_tubes``, ``plotter.add_halo_lines(...)``, ``plotter.halo_lines``,
 ``plotter.add_halo_points(...)``, ``plotter.halo_points``, ``plotter.add_raycast_volume(...)``,
-``plotter.raycast_volumes``, ``plotter.add_slices(...)``, ``plotter.slices`` and
-``polydata.fiblets`` need no import: PyVista finds them by entry points (see ``pyproject.toml``),
-which name the modules ``component`` of each drawable's folder and ``accessor`` here. ``files``
-serves ``pyvista.read`` and ``save``. What can be set of a drawable is declared once, in the
+``plotter.raycast_volumes``, ``plotter.add_slices(...)``, ``plotter.slices``,
+``plotter.add_connectome(...)``, ``plotter.connectomes`` and ``polydata.fiblets`` need no
+import: PyVista finds them by entry points (see ``pyproject.toml``), which name the modules
+``component`` of each drawable's folder and ``accessor`` here. ``files`` serves
+``pyvista.read`` and ``save``. What can be set of a drawable is declared once, in the
 ``settings`` of its folder. The actor's colours are found in ``scalars`` and made into a look-up
 table in ``colours``; the drawing is the mapper's.
 
@@ -23,6 +24,8 @@ from pvfiblets.plotting.components import await_components
 from pvfiblets.support.lazy_imports import names_from
 
 if TYPE_CHECKING:
+    from pvfiblets.plotting.connectomes.component import AddConnectome, ConnectomesComponent
+    from pvfiblets.plotting.connectomes.graph import ConnectomeGraph
     from pvfiblets.plotting.fiblets.actor import FibletActor
     from pvfiblets.plotting.fiblets.component import AddFiblets, FibletsComponent
     from pvfiblets.plotting.halos.actors import HaloLineActor, HaloPointActor
@@ -41,12 +44,15 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.volumes.component import AddRaycastVolume, RaycastVolumesComponent
 
 __all__ = [
+    "AddConnectome",
     "AddFiblets",
     "AddHaloLines",
     "AddHaloPoints",
     "AddRaycastVolume",
     "AddSlices",
     "AddSplineTubes",
+    "ConnectomeGraph",
+    "ConnectomesComponent",
     "FibletActor",
     "FibletsComponent",
     "HaloLineActor",
@@ -71,10 +77,13 @@ _HOME = {
     "HaloPointsComponent": "halos.component",
     "AddRaycastVolume": "volumes.component",
     "RaycastVolumesComponent": "volumes.component",
+    "AddConnectome": "connectomes.component",
+    "ConnectomesComponent": "connectomes.component",
     "AddSlices": "slices.component",
     "SlicesComponent": "slices.component",
     "AddSplineTubes": "tubes.component",
     "SplineTubesComponent": "tubes.component",
+    "ConnectomeGraph": "connectomes.graph",
     "FibletActor": "fiblets.actor",
     "HaloLineActor": "halos.actors",
     "HaloPointActor": "halos.actors",

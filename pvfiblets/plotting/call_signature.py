@@ -40,8 +40,8 @@ def document(component: Any) -> None:
     kept = [one for one in own if one.kind is not one.VAR_KEYWORD]
     inherited = component.add
 
-    def add(self: Any, /, source: Any, **arguments: Any) -> Any:
-        return inherited(self, source, **arguments)
+    def add(self: Any, /, *data: Any, **arguments: Any) -> Any:
+        return inherited(self, *data, **arguments)
 
     add.__module__, add.__qualname__ = component.__module__, f"{component.__name__}.add"
     add.__doc__ = _with_parameters(inspect.cleandoc(component._make.__doc__ or ""), declared)

@@ -29,6 +29,8 @@ HOMES = {
     "raycast_volumes": "volumes.component",
     "add_slices": "slices.component",
     "slices": "slices.component",
+    "add_connectome": "connectomes.component",
+    "connectomes": "connectomes.component",
     "picture": "picture_component",
 }
 """Modules of components by name, as the entry points of ``pyproject.toml`` have them."""

@@ -10,6 +10,9 @@ from pyvista.plotting._typing import ColorLike, ColormapOptions
 
 from pvfiblets.codec.compress import PerPoint
 from pvfiblets.halos.displacement import Displacement
+from pvfiblets.plotting.connectomes.component import ConnectomesComponent
+from pvfiblets.plotting.connectomes.component import Labels as ConnectomesLabels, Matrix as ConnectomesMatrix
+from pvfiblets.plotting.connectomes.graph import ConnectomeGraph
 from pvfiblets.plotting.fiblets.actor import FibletActor
 from pvfiblets.plotting.fiblets.component import FibletsComponent
 from pvfiblets.plotting.fiblets.component import Source as FibletsSource
@@ -177,6 +180,22 @@ class _SlicesComponent(SlicesComponent):
     @property
     def add(self) -> _AddSlices: ...  # type: ignore[override]
 
+class _AddConnectome(Protocol):
+    def __call__(
+        self, matrix: ConnectomesMatrix, labels: ConnectomesLabels, *, nodes: str | None = "spheres",
+        edges: str | None = "tubes", threshold: float = 0.0, names: Any = None, streamlines: Any = None,
+        radius: float | None = None, node_radius: float | np.ndarray | None = None,
+        cmap: ColormapOptions | pv.LookupTable | None = None, clim: float | Sequence[float] | None = None,
+        n_colors: int = 256, log_scale: bool = False,
+        opacity: float | str | Sequence[float] | np.ndarray | None = None, name: str | None = None,
+        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
+        user_matrix: TransformLike | None = None, reset_camera: bool | None = None, render: bool = True,
+    ) -> ConnectomeGraph: ...
+
+class _ConnectomesComponent(ConnectomesComponent):
+    @property
+    def add(self) -> _AddConnectome: ...  # type: ignore[override]
+
 class Plotter(pv.Plotter):
     @property
     def add_fiblets(self) -> _AddFiblets: ...
@@ -202,5 +221,9 @@ class Plotter(pv.Plotter):
     def add_slices(self) -> _AddSlices: ...
     @property
     def slices(self) -> _SlicesComponent: ...
+    @property
+    def add_connectome(self) -> _AddConnectome: ...
+    @property
+    def connectomes(self) -> _ConnectomesComponent: ...
     @property
     def picture(self) -> PictureComponent: ...

@@ -17,7 +17,8 @@ from pvfiblets.plotting.volumes.actor import VolumeActor
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGES = sorted([*DOCS.glob("*.md"), *DOCS.glob("explanation/*.md"), *DOCS.glob("reference/*.md")])
 ACTORS = (FibletActor, HaloLineActor, HaloPointActor, TubeActor, VolumeActor, SliceLayer)
-COMPONENTS = ("fiblets", "spline_tubes", "halo_lines", "halo_points", "raycast_volumes", "slices", "picture")
+COMPONENTS = ("fiblets", "spline_tubes", "halo_lines", "halo_points", "raycast_volumes", "slices", "connectomes",
+              "picture")  # fmt: skip
 OF_OTHERS = re.compile(r"\b(?:pip|dask|card\.sh|configurable-http-proxy)\b|actor\.line\(lod")
 
 

@@ -58,9 +58,10 @@ import pyvista as pv
 
 line = np.stack([np.linspace(0.0, 9.0, 12), np.zeros(12), np.sin(np.arange(12.0))], axis=1)
 cube = np.arange(125.0).reshape(5, 5, 5)
-given = {"add_halo_points": line, "add_raycast_volume": cube, "add_slices": cube}
+given = {"add_halo_points": [line], "add_raycast_volume": [cube], "add_slices": [cube],
+         "add_connectome": [np.ones((12, 12)), line]}
 plotter = pv.Plotter(off_screen=True)
-actor = getattr(plotter, sys.argv[1])(given.get(sys.argv[1], [line, line + 1.0]))
+actor = getattr(plotter, sys.argv[1])(*given.get(sys.argv[1], [[line, line + 1.0]]))
 plotter.show(auto_close=False)
 plotter.close()
 """

@@ -45,7 +45,7 @@ def test_the_stub_names_every_component_and_its_class():
 
 
 @pytest.mark.parametrize("name", ["add_fiblets", "add_spline_tubes", "add_halo_lines", "add_halo_points",
-                                  "add_raycast_volume"])  # fmt: skip
+                                  "add_raycast_volume", "add_connectome"])  # fmt: skip
 def test_the_stub_has_the_arguments_and_defaults_of_the_calls(name):
     kinds = {node.name: node for node in ast.parse(STUB.read_text()).body if isinstance(node, ast.ClassDef)}
     method = getattr(pv.Plotter(off_screen=True), name)

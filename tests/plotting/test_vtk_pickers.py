@@ -99,6 +99,20 @@ def test_tubes_are_hit_at_their_surface(plotter, three_lines):
     assert vtkPicker().Pick(*pixel_of(plotter, (5.0, -9.0, 0.0)), 0.0, plotter.renderer)
 
 
+def test_picked_cells_of_balls_are_streamlines(plotter, three_lines):
+    """Alone, and beside tubes."""
+    for rest in ([], [three_lines.points[:41]]):
+        places = np.array([(-3.0, 4.0, 0.0), (6.0, 0.0, 0.0)])
+        actor = plotter.add_spline_tubes([*rest, places[:1], places[1:]], radius=1.5)
+        plotter.camera_position = "xy"
+        plotter.show(auto_close=False)
+        for ball, place in enumerate(places, len(rest)):
+            picker = vtkCellPicker()
+            assert picker.Pick(*pixel_of(plotter, place), 0.0, plotter.renderer)
+            assert pv.wrap(picker.GetDataSet()).cell_data["streamline"][picker.GetCellId()] == ball
+        plotter.remove_actor(actor)
+
+
 def test_hardware_selection_gives_segments_of_the_streamlines_that_are_seen(plotter, scene, three_lines):
     before = plotter.screenshot()
     pixel = pixel_of(plotter, three_lines.points[30]).round().astype(int)

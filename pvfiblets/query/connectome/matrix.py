@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec.progress import Progress
+from ...errors import FormatError
 from ...images.sources import as_image, is_image
 from ...support.progress_bar import progress_bar
 from ..measures.measures import measure
@@ -31,10 +32,10 @@ if TYPE_CHECKING:
     from ...images.image import Image
     from ...streamlines import Streamlines
 
-__all__ = ["STATISTICS", "SUFFIXES", "Connectome", "connectome", "end_labels"]
+__all__ = ["STATISTICS", "SUFFIXES", "Connectome", "connectome", "end_labels", "read_matrix"]
 
 STATISTICS = ("sum", "mean", "min", "max")  # statistics that turn the numbers of one pair's streamlines into one
-SUFFIXES = (".csv", ".tsv", ".txt", ".npy")  # suffixes of files that a connectome is written to
+SUFFIXES = (".csv", ".tsv", ".txt", ".npy")  # suffixes of files that a connectome is written to, and read from
 MOST_VOXELS = 1 << 20  # voxels that may be looked at about an end
 TOGETHER = 1 << 18  # ends that are given their parcels together
 
@@ -169,6 +170,41 @@ class Connectome:
                 file.write(text.getvalue().encode())
 
 
+def read_matrix(path: str | os.PathLike[str]) -> tuple[Floats, list[str] | None]:
+    """Return the numbers of a matrix's file, of :meth:`Connectome.save` or MRtrix, and names that it has of parcels."""
+    source = Path(path).expanduser()
+    suffix = check_target(source)
+    if suffix == ".npy":
+        from ...formats.attachments import read_rows
+
+        return np.asarray(read_rows(str(source), suffix), np.float64), None
+    text = source.read_text(encoding="utf-8", errors="replace")
+    lines = [line for line in text.splitlines() if line.strip() and line.lstrip()[0] != "#"]
+    marks = "\t" if suffix == ".tsv" else ",;\t"
+    mark = next((mark for mark in marks if lines and mark in lines[0]), None)
+    rows = [line.split() for line in lines] if mark is None else list(csv.reader(lines, delimiter=mark))
+    names = None
+    if rows and (not rows[0][0].strip() or not all(map(_is_number, rows[0]))):
+        names, *rows = rows
+        if rows and len(rows[0]) == len(rows) + 1:  # their first column has the names again
+            names, rows = names[len(names) - len(rows) :], [row[1:] for row in rows]
+    if not rows or {len(row) for row in rows} != {len(rows[0])}:
+        widths = sorted({len(row) for row in rows})
+        raise FormatError(source, None, f"rows of {widths} numbers", "a matrix, all rows of the same length")
+    bad = next((cell for row in rows for cell in row if not _is_number(cell)), None)
+    if bad is not None:
+        raise FormatError(source, None, repr(bad), "a number, or an empty cell")
+    return np.array([[float(cell) if cell.strip() else np.nan for cell in row] for row in rows]), names
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell.strip() or "nan")
+    except ValueError:
+        return False
+    return True
+
+
 def check_target(path: str | os.PathLike[str]) -> str:
     """Return the suffix of a file to be written."""
     suffix = Path(path).suffix.lower()
@@ -233,7 +269,7 @@ def connectome(
         If the labels hold no parcel or fractions, the radius is no length or so large that more than a million voxels
         lie within it, there is no such statistic, or weights or numbers do not fit.
     """
-    source = _opened(data)
+    source = opened(data)
     atlas = as_image(labels, "the atlas")
     how = _statistic(statistic, counts=isinstance(contrast, str) and contrast == "count")
     ends = _given_ends(ends, source, atlas, radius, progress)
@@ -308,7 +344,7 @@ def _offsets(linear: Floats, reach: float) -> tuple[Ints, Floats]:
     return np.ascontiguousarray(grid[order]), np.ascontiguousarray(away[order])
 
 
-def _opened(data: Any) -> Any:
+def opened(data: Any) -> Any:
     if not isinstance(data, (str, os.PathLike)):
         return data
     from ...codec.files.open_lines import open_lines

@@ -1,0 +1,1 @@
+"""Connectomes as nodes and edges: the component and the graph that it adds."""
