@@ -46,6 +46,7 @@ CASES = {
     "values of streamlines": {"scalars": "number", "cmap": "viridis", "n_colors": 7, "show_scalar_bar": False},
     "values of points": {"scalars": "share", "cmap": "plasma", "clim": (0.2, 0.7), "show_scalar_bar": False},
     "computed values": {"scalars": "curvature", "log_scale": True, "show_scalar_bar": False},
+    "ends": {"style": "ends", "point_size": 7.0},
     "illuminated": {"illuminated": True, "line_width": 3.0},
 }
 
