@@ -5,13 +5,15 @@ import re
 import numpy as np
 import pytest
 
-from pvfiblets import Streamlines, compress
+from pvfiblets import Streamlines, compress, regions
 from pvfiblets.codec.restrict import restrict
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
+from pvfiblets.engine.fiblets.data import chunks
 from pvfiblets.engine.fiblets.data.filter_textures import Filter
 from pvfiblets.engine.fiblets.gather.paint import Paint
 from pvfiblets.engine.gbuffer import GBuffer
 from pvfiblets.engine.gl import shaders
+from pvfiblets.synthetic import brain_streamlines
 from tests.drivers import MESH
 
 from .emulated import emulated_renderer
@@ -137,6 +139,26 @@ def test_planes_leave_ends_on_the_kept_side(gl, fabricate, random_lines, camera,
 
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
+def test_regions_cut_discs_at_the_depth_of_their_points(gl, fabricate, random_lines, camera, pipeline):
+    fiblets = fabricate(random_lines(150, seed=9), kind=3, per_fiblet=20)
+    matrix, ball = camera(SIZE), regions.Sphere((5.0, -3.0, 2.0), 28.0)
+    picture = draw(gl, fiblets, View(SIZE, matrix, region=ball), ends(9.0), pipeline=pipeline)
+    assert picture.drawn.sum() > 50
+    # All that is drawn lies in the ball, and where all of a disc does, it is there.
+    y, x = np.nonzero(picture.drawn)
+    window = np.c_[2 * (x + 0.5) / SIZE[0] - 1, 2 * (y + 0.5) / SIZE[1] - 1, 2 * picture.window_depth[y, x] - 1]
+    places = to_clip(window, np.linalg.inv(matrix))
+    away = np.linalg.norm(places[:, :3] / places[:, 3:] - (5.0, -3.0, 2.0), axis=1)
+    assert (away < 28.0 + 1e-2).all()
+    well_inside = Discs(
+        fiblets.lines, matrix, 9.0, keep=lambda points, _: np.linalg.norm(points - (5.0, -3.0, 2.0), axis=1) < 20.0
+    )
+    assert picture.drawn[well_inside.drawn & well_inside.sure].all()
+    anywhere = Discs(fiblets.lines, matrix, 9.0)
+    assert not picture.drawn[~anywhere.drawn & anywhere.sure].any()
+
+
+@pytest.mark.parametrize("pipeline", PIPELINES)
 def test_filters_hide_ends(gl, fabricate, random_lines, camera, pipeline):
     """Of hidden streamlines both, and of cut ones those whose segment is gone; a cut makes no new end."""
     fiblets = fabricate(random_lines(120, seed=3), kind=2, per_fiblet=12)
@@ -178,6 +200,23 @@ def test_fiblets_without_an_end_are_culled(gl, random_lines, camera, pipeline, c
     plain = draw(gl, fiblets, view, ends(3.0), pipeline=pipeline, culling=None)
     for picture in pictures if culling != "coverage" else []:
         assert_same(picture, plain)
+
+
+def test_clusters_lose_no_disc(gl, camera, monkeypatch):
+    fiblets = compress(brain_streamlines(1500, step=0.5, seed=2), max_error=1e-3)
+    plain, views = FibletRenderer(gl, fiblets, culling=None), []
+    monkeypatch.setattr(chunks, "CLUSTERED", 0)
+    clustered = FibletRenderer(gl, fiblets, culling="two-phase")
+    try:
+        assert all("clusters" in chunk.buffers for chunk in clustered._chunks)
+        for turn in np.linspace(0.0, 1.0, 5):
+            eye = (300 * np.sin(turn), -300 * np.cos(turn), 40.0)
+            views.append(View(SIZE, camera(SIZE, eye=eye, near=50.0, far=600.0)))
+        for view in [*views, views[-1], views[0]]:
+            assert_same(read(clustered.render(view, ends(6.0))), read(plain.render(view, ends(6.0))))
+    finally:
+        clustered.release()
+        plain.release()
 
 
 def test_pipelines_show_the_same(gl, random_lines, camera):
