@@ -200,3 +200,17 @@ def test_smooth_edges_keep_the_area(window):
         plotter.picture.antialias = antialias
         area = picture(plotter)[..., 0].sum() / 255.0
         assert area == pytest.approx(18 * np.pi * 5.5**2, rel=0.02), antialias
+
+
+def test_selected_streamlines_of_a_width_show_whole(window, three_lines):
+    plotter = window()
+    actor = plotter.add_fiblets(three_lines, color="white", lighting=False, style="ends")
+    discs = picture(plotter).any(-1)
+    actor.select([0])
+    actor.selection_style(width=3.0, dim=0.0)
+    found = picture(plotter).any(-1)
+    middle = np.floor(in_window(plotter, np.array([[0.0, -10.0, 0.0], [0.0, 5.0, 0.0]]))).astype(int)
+    shown = [bool(found[SIZE[1] - 1 - y, x]) for x, y in middle]
+    assert shown == [True, False]
+    assert not discs[SIZE[1] - 1 - middle[:, 1], middle[:, 0]].any()
+    assert found[discs].all()
