@@ -38,6 +38,7 @@ ANY_LINES = (
     "CLIP_REGION",
     "EDGES",
     "WIDE_LINES",
+    "LINE_ENDS",
     "VALUES_STORED",
     "VALUES_COLOUR",
     "POINT_MASK",

@@ -129,7 +129,7 @@ export class Controls {
         renderer.change();
       }));
       if (layer.kind === "fiblets") {
-        rows.push(slider("Line width", 0.5, 10, layer.line_width, (width) => {
+        rows.push(slider(layer.ends ? "Point size" : "Line width", 0.5, layer.ends ? 20 : 10, layer.line_width, (width) => {
           layer.line_width = width;
           renderer.change(true);
         }));

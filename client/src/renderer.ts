@@ -583,6 +583,7 @@ export class Renderer {
         brush = 1 + (wide ? (lines.layer.line_width * this.ratio) / 2 : 0);
         const features = ["CLIPPING", "CLIPPING_DEPTH", "EDGES"];
         if (wide) features.push("WIDE_LINES");
+        if (lines.layer.ends) features.push("LINE_ENDS");
         if (clipped) features.push("CLIP_PLANES");
         if (lines.layer.cut && this.cut(lines.layer.cut, frame.matrices))
           features.push("CLIP_REGION", `REGION ${expression(lines.layer.cut)}`);
@@ -646,7 +647,7 @@ export class Renderer {
   }
 
   private wide(lines: Lines): boolean {
-    return lines.layer.line_width * this.ratio > 1;
+    return lines.layer.ends || lines.layer.line_width * this.ratio > 1;
   }
 
   /** Tell a program what colours lines. */

@@ -57,6 +57,7 @@ export interface FibletLayer extends Layer {
   data: number;
   colours: Colours;
   line_width: number;
+  ends: boolean; // whether only the ends of streamlines are drawn, as discs of that width
   light: "none" | "line" | "illuminated";
   reflects: [number, number, number, number];
   sheen: Vec;

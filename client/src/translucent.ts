@@ -10,7 +10,7 @@ import type { Drawn } from "./surfaces";
 
 const SLICES = 4, GROWTH = 2.5, MOST_OPAQUE = 0.999;
 const EDGES = [1, 2, 3].map((k) => (GROWTH ** k - 1) / (GROWTH ** SLICES - 1));
-const SHOULDER: Vec = [-1, 1, 1];   // whence light comes in view coordinates (shaders/resolve/line_light.glsl)
+const SHOULDER: Vec = [-1, 1, 1];   // whence light comes in view coordinates (shaders/frame/gentle_light.glsl)
 
 /** The nearest lines of a layer, and the sums of those behind. */
 interface Held {

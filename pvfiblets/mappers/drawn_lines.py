@@ -72,16 +72,22 @@ def near_ray(fiblets: FibletSet, filtering: Any, ray: Any, budget: int) -> npt.N
 
 
 def fiblet_lines(
-    fiblets: FibletSet, colouring: Colouring | None, filtering: Any, ids: npt.NDArray[np.int64]
+    fiblets: FibletSet,
+    colouring: Colouring | None,
+    filtering: Any,
+    ids: npt.NDArray[np.int64],
+    *,
+    ends: bool = False,
 ) -> LineData:
-    """Return decoded streamlines."""
+    """Return decoded streamlines, or their ends as lines of one point."""
     decoded = fiblets.decompress(ids)
     lines = LineData(decoded.points, decoded.offsets, np.asarray(ids, np.int64))
     lines = lines.with_columns(**{name: rows for name, rows in decoded.per_point.items() if rows.ndim == 1})
     lines = _coloured(lines, colouring, partial(_fiblet_values, lines, decoded), decoded.per_point)
-    if filtering is not None and filtering.points is not None:
-        lines = lines.kept(point_flags(fiblets, filtering.points, ids))
-    return lines
+    flags = None if filtering is None or filtering.points is None else point_flags(fiblets, filtering.points, ids)
+    if ends:
+        return lines.ends(flags)
+    return lines if flags is None else lines.kept(flags)
 
 
 def _fiblet_values(lines: LineData, decoded: Streamlines, source: Any, *, colours: bool) -> npt.NDArray[Any]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from pvfiblets.engine.fiblets.style import FibletStyle
+from pvfiblets.engine.fiblets.style import LARGEST_DISC, FibletStyle
 from pvfiblets.engine.view import Style, View
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import FilteredMapper
@@ -62,7 +62,7 @@ class FibletMapper(FilteredMapper[EngineOptions]):
     _NAME = "FibletMapper"
     _HAS_EDGES = True
 
-    COPIED = (*FilteredMapper.COPIED, "_line_width", "_compression", "_compressed")
+    COPIED = (*FilteredMapper.COPIED, "_line_width", "_ends", "_compression", "_compressed")
 
     def __init__(
         self,
@@ -78,6 +78,7 @@ class FibletMapper(FilteredMapper[EngineOptions]):
         self._compression = dict(compression or {})
         self._compressed: tuple[Any, Any] = (None, None)
         self._detail = 0.0
+        self._ends = False
         super().__init__(
             fiblets,
             colouring=Colouring() if colouring is None and fiblets is not None else colouring,
@@ -113,6 +114,24 @@ class FibletMapper(FilteredMapper[EngineOptions]):
         self._link.modified()
 
     @property
+    def ends(self) -> bool:
+        """Whether only the ends of streamlines are drawn, as discs as wide as the property's point size."""
+        return self._ends
+
+    @ends.setter
+    def ends(self, wanted: bool) -> None:
+        self._ends = bool(wanted)
+        self._link.modified()
+
+    @property
+    def drawn_width(self) -> float:
+        """Pixels of the window that lines, or discs at their ends, are wide."""
+        if not self._ends:
+            return self.line_width
+        size = 1.0 if self.actor is None else float(self.actor.GetProperty().GetPointSize())
+        return min(max(size, 1.0), LARGEST_DISC)
+
+    @property
     def detail(self) -> float:
         """Error of lines in pixels of the window (`FibletStyle.tolerance`); 0 draws every point."""
         return self._detail
@@ -126,17 +145,18 @@ class FibletMapper(FilteredMapper[EngineOptions]):
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> FibletStyle:
         return FibletStyle(
-            line_width=self.line_width * pixel_scale,
+            line_width=self.drawn_width * pixel_scale,
+            ends=self._ends,
             min_width=max(1.0, pixel_scale),
             tolerance=max(self._detail * pixel_scale, slack(renderer)),
         )
 
     def _narrower(self, pixel_scale: float) -> float:
-        return 0.0 if self._thickness > 0.0 else max(1.0 - self.line_width * pixel_scale, 0.0)
+        return 0.0 if self._thickness > 0.0 or self._ends else max(1.0 - self.line_width * pixel_scale, 0.0)
 
     def _widened(self, style: FibletStyle, frame: Frame) -> bool:
         if style.radius is None:
-            return style.line_width <= 1.0
+            return style.line_width <= 1.0 and not style.ends
         return 2.0 * style.radius * frame.least_scale(self._drawn.bounds) < style.min_width
 
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:
@@ -150,8 +170,10 @@ class FibletMapper(FilteredMapper[EngineOptions]):
         return painted_fiblets(self._compressed[1], data, self)
 
     def _readable_points(self) -> int | None:
-        from pvfiblets.mappers.drawn_lines import shown_points
+        from pvfiblets.mappers.drawn_lines import shown_points, shown_streamlines
 
+        if self._ends:
+            return 2 * len(shown_streamlines(self._drawn, self._filtering))
         return shown_points(self._drawn, self._filtering) * (SIDES if self._thickness > 0.0 else 1)
 
     def _selects_lines(self) -> bool:
@@ -162,15 +184,18 @@ class FibletMapper(FilteredMapper[EngineOptions]):
 
         ids = shown_streamlines(self._drawn, self._filtering)
         if budget < (self._readable_points() or 0):
-            ids = ids[thinned(np.diff(self._drawn.offsets())[ids] * (SIDES if self._thickness > 0.0 else 1), budget)]
+            counts = np.full(len(ids), 2) if self._ends else np.diff(self._drawn.offsets())[ids]
+            ids = ids[thinned(counts * (SIDES if self._thickness > 0.0 else 1), budget)]
         return self._readable_ids(ids, colours=colours, segments=segments)
 
     def _readable_ids(self, ids: Any, *, colours: bool, segments: bool) -> Any:
         from pvfiblets.mappers.drawn_lines import fiblet_lines
         from pvfiblets.mappers.line_data import RADIUS, tube_surface
 
-        lines = fiblet_lines(self._drawn, self._colouring if colours else None, self._filtering, ids)
+        lines = fiblet_lines(self._drawn, self._colouring if colours else None, self._filtering, ids, ends=self._ends)
         lines = self._within_cuts(lines)
+        if self._ends:
+            return lines.to_polydata(vertices=True)
         if self._thickness <= 0.0 or segments:
             return lines.to_polydata(segments=segments)
         return tube_surface(lines.with_columns(**{RADIUS: np.full(len(lines.points), self._thickness)}))

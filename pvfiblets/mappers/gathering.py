@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pvfiblets.mappers.shader_effects import Draw
 
 _SHOULDER = np.array([-1.0, 1.0, 1.0]) / np.sqrt(3.0)
-"""Direction of light in view coordinates (``shaders/resolve/line_light.glsl``)."""
+"""Direction of light in view coordinates (``shaders/frame/gentle_light.glsl``)."""
 
 
 def paint_of(draw: Draw, *, lit: bool, opacity: float | None = None) -> Paint:

@@ -71,6 +71,17 @@ class LineData:
         rows = np.flatnonzero(points)
         return self._runs(rows, np.zeros(len(rows)), begins[points])
 
+    def ends(self, points: Flags | None = None) -> LineData:
+        """Return the first and the last point of each line as lines of one point, where the segment there is kept."""
+        first, last = self.offsets[:-1], self.offsets[1:] - 1
+        rows = np.concatenate([first[last >= first], last[last > first]])
+        if points is not None:
+            inner = np.concatenate([np.minimum(first + 1, last)[last >= first], (last - 1)[last > first]])
+            rows = rows[points[rows] & points[inner]]
+        rows = np.sort(rows)
+        columns = {name: column[rows] for name, column in self.columns.items()}
+        return LineData(self.points[rows], np.arange(len(rows) + 1), self.ids[self.owners[rows]], columns)
+
     def with_segments(self, goes_on: Flags) -> LineData:
         """Return some of the segments: of each point, whether the one that starts there is kept."""
         before = np.concatenate([np.zeros(1, bool), goes_on])[:-1]
@@ -136,7 +147,7 @@ class LineData:
         ids = self.ids
         connectivity, offsets = np.arange(len(self.points)), self.offsets
         if vertices:
-            offsets, ids = np.arange(len(self.points) + 1), np.arange(len(self.points))
+            offsets, ids = np.arange(len(self.points) + 1), ids[self.owners]
         elif segments:
             owners = self.owners
             first = np.flatnonzero(owners[1:] == owners[:-1])

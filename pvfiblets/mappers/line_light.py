@@ -13,13 +13,12 @@ class LineLight(ShaderEffect):
     features = frozenset({"line_light"})
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
-        """Set what the lights of the scene add up to, and whether one of them stands in it."""
+        """Set the sum of the lights' brightness, and whether one of them stands in the scene."""
         lights = draw.renderer.GetLights()
         every = [lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems())]
         on = [light for light in every if light.GetSwitch() and light.GetIntensity() > 0.0]
-        shares = [(light.GetIntensity(), light.GetDiffuseColor()) for light in on]
-        total = [sum(intensity * colour[channel] for intensity, colour in shares) for channel in range(3)]
-        program.SetUniform3f("fibletLights", [float(channel) for channel in total])
+        brightness = sum(light.GetIntensity() * sum(light.GetDiffuseColor()) for light in on)
+        program.SetUniformf("fibletLights", float(brightness))
         program.SetUniformf("fibletStanding", float(any(light.LightTypeIsSceneLight() for light in on)))
 
 

@@ -101,6 +101,7 @@ class LineReading:
         return (
             mapper._drawn, mapper.colouring if colours else None, getattr(mapper, "_filtering", None),  # noqa: SLF001
             getattr(mapper, "_look", None), *cuts, placed, mapper._thickness, mapper.ink,  # noqa: SLF001
+            getattr(mapper, "ends", False),
         )  # fmt: skip
 
     def watch(self, renderer: vtkRenderer) -> None:

@@ -116,7 +116,8 @@ def fiblet_layer(
     name: str = "streamlines",
     colours: dict[str, Any] | None = None,
     keep: tuple[str, ...] = (),
-    line_width: float = 1.0,
+    line_width: float = 1.0,  # pixels of lines, or of the discs at their ends if only these are drawn
+    ends: bool = False,
     light: str = "line",
     reflects: tuple[float, float, float, float] = (0.0, 1.0, 0.0, 1.0),
     sheen: Vector = (1.0, 1.0, 1.0),
@@ -133,6 +134,7 @@ def fiblet_layer(
         "data": scene.add_blob(scene.once(("bytes", fiblets, keep), lambda: fiblet_bytes(fiblets, keep))),
         "colours": colours or {"mode": "orientation"},
         "line_width": float(line_width),
+        "ends": ends,
         "light": light,
         "reflects": reflects,
         "sheen": sheen,

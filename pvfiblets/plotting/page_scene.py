@@ -172,8 +172,8 @@ def _add_fiblets(
     place = to_array(actor.GetMatrix())
     matrix = None if np.array_equal(place, np.eye(4)) else place
     fiblet_layer(
-        scene, fiblets, name=_label(name, "streamlines"), colours=colours, keep=keep, line_width=mapper.line_width,
-        light=light, reflects=reflects, sheen=sheen, matrix=matrix, **more,
+        scene, fiblets, name=_label(name, "streamlines"), colours=colours, keep=keep, line_width=mapper.drawn_width,
+        ends=mapper.ends, light=light, reflects=reflects, sheen=sheen, matrix=matrix, **more,
     )  # fmt: skip
     scalars = getattr(actor, "active_scalars", None)
     if scalars is not None and scalars.mapped and getattr(mapper.colouring, "lut", None) is not None:

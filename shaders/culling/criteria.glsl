@@ -1,5 +1,5 @@
 // The criteria that cull fiblets, besides occlusion: the view volume (culling/frustum.glsl), and the caller's
-// choice. Culled are fiblets of hidden streamlines, fiblets without a visible segment, and fiblets wholly
+// choice. Culled are fiblets without an end of their streamline where only ends are drawn, fiblets of hidden streamlines, fiblets without a visible segment, and fiblets wholly
 // beyond the caller's planes or outside the caller's region. All pipelines cull by these two functions: a new criterion is a
 // line of fails_criteria(), under a feature of its own.
 //
@@ -20,6 +20,9 @@ bool beyond_clip_planes(Capsule c) { return clip_height(0.5 * (c.a + c.b)) + cli
 // Whether the caller's choice culls a fiblet; `partly`: whether the rest of it may need to be cut.
 bool fails_criteria(uint f, Capsule c, out bool partly) {
     partly = false;
+#if FEATURE_LINE_ENDS
+    if (!begins(f) && !ends(f)) return true;
+#endif
 #if FEATURE_STREAMLINE_MASK
     if (!streamline_shown(f)) return true;
 #endif

@@ -5,6 +5,8 @@
 
 const int MOST_LIGHTS = 8;
 
+#include "frame/gentle_light.glsl"
+
 uniform int light_count;
 uniform vec3 light_colour[MOST_LIGHTS];
 uniform vec4 light_place[MOST_LIGHTS];
@@ -12,12 +14,6 @@ uniform vec3 light_sum;                // of all colours
 uniform float light_standing;          // 1: one of them stands in the scene
 
 vec3 to_light(int i, vec3 place) { return normalize(light_place[i].xyz - light_place[i].w * place); }
-
-float across_line(vec3 tangent, vec3 d) {
-    float along = dot(tangent, d);
-    along *= along;
-    return max(0.0, 1.0 - along * along);
-}
 
 vec3 light_on_line(vec3 own, vec3 tangent, vec3 place, bool illuminated, vec4 reflects, vec3 sheen) {
     vec3 sight = normalize(-place), normal = sight - tangent * dot(tangent, sight);
@@ -36,12 +32,8 @@ vec3 light_on_line(vec3 own, vec3 tangent, vec3 place, bool illuminated, vec4 re
     vec3 on;
     if (illuminated) on = diffuse / max(1.0, max(light_sum.r, max(light_sum.g, light_sum.b)));
     else {
-        float brightest = max(light_sum.r, max(light_sum.g, light_sum.b));
-        vec3 tint = light_sum / max(brightest, 1e-6);
-        tint = mix(vec3(1.0), tint, 1.0 - min(tint.r, min(tint.g, tint.b)));
-        vec3 share = min(diffuse / max(light_sum, vec3(1e-6)), vec3(1.0));
-        share = mix(vec3(across_line(tangent, vec3(-0.57735027, 0.57735027, 0.57735027))), share, light_standing);
-        on = min(brightest, 1.0) * tint * mix(vec3(0.8), vec3(1.0), share);
+        float share = min(dot(diffuse, vec3(1.0)) / max(dot(light_sum, vec3(1.0)), 1e-6), 1.0);
+        on = vec3(gentle_light(light_standing > 0.0 ? share : across_line(tangent, SHOULDER)));
     }
     return reflects.x * own + reflects.y * on * own + reflects.z * sheen * shine;
 }

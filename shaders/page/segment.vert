@@ -78,11 +78,16 @@ void main() {
     if (texelFetch(kept, texel(item.x), 0).x == 0u) return;
 #endif
     bool start = k == 0u && begins, cap = k + 1u == count && ends;
+#if FEATURE_LINE_ENDS
+    if (!start && !cap) return;
+#endif
     uint here = item.y + k, there = item.y + min(k + 1u, points - (ends ? 1u : 0u));
 #if FEATURE_POINT_MASK
     if (!point_kept(here) || !point_kept(there)) return;
+#if !FEATURE_LINE_ENDS
     start = start || !point_kept(here - 1u);
     cap = cap || !point_kept(there + 1u);
+#endif
 #endif
     vec2 values = vec2(0.0);
 #if FEATURE_VALUES_STORED
@@ -112,6 +117,9 @@ void main() {
 #endif
     vec2 a = piece.a.xy, run = piece.b.xy - a;
     float size = length(run), reach = half_line_width + 0.05, back = piece.start ? reach : 0.05;
+#if FEATURE_LINE_ENDS
+    back = reach;   // a short segment's end reaches beyond its start
+#endif
     vec2 along = size > 0.0 ? run / size : vec2(1.0, 0.0), across = vec2(-along.y, along.x);
     vec2 at = ((gl_VertexID & 2) == 0 ? a - back * along : piece.b.xy + reach * along) + ((gl_VertexID & 1) == 0 ? -reach : reach) * across;
     gl_Position = vec4(2.0 * at / viewport - 1.0, 0.0, 1.0);

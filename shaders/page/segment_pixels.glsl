@@ -3,6 +3,9 @@
 // The pixels of thin lines: fiblets/segments/thin_line_rule.glsl. Those of wide lines: fiblets/hardware_raster/capsule.frag.
 
 #if FEATURE_WIDE_LINES
+#if FEATURE_LINE_ENDS
+#include "fiblets/segments/ends.glsl"
+#endif
 #if FEATURE_CLIP_PLANES
 bool brush_kept(float s, vec2 away) {
     for (int plane = 0; plane < clip_plane_count; ++plane) {
@@ -16,15 +19,26 @@ bool brush_kept(float s, vec2 away) {
 
 void main() {
     vec2 run = seg_end.xy - seg_start.xy, centre = gl_FragCoord.xy - seg_start.xy;
+#if FEATURE_LINE_ENDS
+    bool start = (seg_ids.y & 1u) != 0u, cap = (seg_ids.y & 2u) != 0u;
+    float s = end_at(ClippedSegment(seg_start, seg_end, 0.0, 1.0, start, cap, 0.0, false), centre, run, half_line_width);
+    if (s < 0.0) discard;
+    vec2 away = centre - s * run;
+#else
     float foot = dot(centre, run) / max(dot(run, run), 1e-12), s = clamp(foot, 0.0, 1.0);
     vec2 away = centre - s * run;
     if (foot < 0.0 && (seg_ids.y & 1u) == 0u || dot(away, away) > half_line_width * half_line_width) discard;
     if (foot > 1.0 && beyond_joint(seg_onward, centre - run)) discard;
+#endif
 #if FEATURE_CLIP_PLANES
     if (!brush_kept(s, away)) discard;
 #endif
     gl_FragDepth = clamp(seg_start.z + (seg_end.z - seg_start.z) * s, 0.0, 0.99999988);
+#if FEATURE_LINE_ENDS
+    write(s, capsule_edges(away, vec2(0.0), half_line_width), gl_FragDepth);
+#else
     write(s, capsule_edges(centre, run, half_line_width), gl_FragDepth);
+#endif
 }
 #else
 

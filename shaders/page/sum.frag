@@ -45,7 +45,12 @@ void write(float s, uint edges, float z) {
 #if FEATURE_WIDE_LINES && FEATURE_GATHER_SLICES
     if (same) {  // not what belongs to the nearest (fiblets/segments/peel.glsl)
         float from = float(int(seg_place - texelFetch(places, pixel, 0).x)) / PLACE_STEPS;
-        if (max(from, -1.0 - from) <= 2.0 * WIDTHS * half_line_width / max(length(seg_end.xy - seg_start.xy), 1e-3)) discard;
+#if FEATURE_LINE_ENDS
+        float reach = 0.0;
+#else
+        float reach = 2.0 * WIDTHS * half_line_width / max(length(seg_end.xy - seg_start.xy), 1e-3);
+#endif
+        if (max(from, -1.0 - from) <= reach) discard;
     }
 #else
     if (same && abs(z - first) < 4e-7) discard;

@@ -7,29 +7,24 @@
 //                                    fifth of the light of most lines
 //   light      m = FLOOR + (1 - FLOOR) s
 //
+// Lights give lines their shape, and nothing else: neither their strength nor their colours count, so that colours that mean
+// something stay true in dim or coloured light. VTK's own lines, which have no normals, are the same in every light.
+//
 // Lights that move with the camera are there so that anything is seen. They count as one, which comes over the viewer's left
 // shoulder, L = (-1, 1, 1) / sqrt(3): equally far from all axes of the picture, so that it takes the same from red, green and
 // blue lines in a view along an axis, where a headlight would put one of them out. Where a light stands in the scene, all lights
-// count from where they are, weighted by colour and intensity c: s = sum c (1 - (L.T)^4) / sum c, channel by channel.
-//
-//   strength   min(max c', 1), c' = sum c
-//   tint       mix(1, c' / max c', 1 - min c' / max c'): nearly white lights count as white, a red lamp stays red
+// count from where they are, weighted by their brightness c, the sum of their channels: s = sum c (1 - (L.T)^4) / sum c.
 //
 // VTK's loop over the lights stays, as in illuminated.glsl, and so do highlights. The last sections are for a single headlight.
 
 //@ fragment after //VTK::CustomUniforms::Dec
-uniform vec3 fibletLights;         // c'
+#include "frame/gentle_light.glsl"
+uniform float fibletLights;        // sum c
 uniform float fibletStanding;      // 1: a light stands in the scene
-const float fibletFloor = 0.8;
 vec3 fibletLineTangent;            // T, in view coordinates
 vec3 fibletLineNormal;             // nearest to the viewer
 
-float fibletAcrossLine(vec3 d)
-{
-  float along = dot(fibletLineTangent, d);
-  along *= along;
-  return max(0.0, 1.0 - along * along);
-}
+float fibletAcrossLine(vec3 d) { return across_line(fibletLineTangent, d); }
 
 // As in illuminated.glsl; the normal that VTK hands over is not asked for.
 vec3 fibletReflect(vec3 incoming, vec3 normal)
@@ -38,14 +33,10 @@ vec3 fibletReflect(vec3 incoming, vec3 normal)
   return along * fibletLineTangent + sqrt(max(0.0, 1.0 - along * along)) * fibletLineNormal;
 }
 
-vec3 fibletOnLine(vec3 diffuse)
+float fibletOnLine(vec3 diffuse)
 {
-  float brightest = max(fibletLights.r, max(fibletLights.g, fibletLights.b));
-  vec3 tint = fibletLights / max(brightest, 1e-6);
-  tint = mix(vec3(1.0), tint, 1.0 - min(tint.r, min(tint.g, tint.b)));
-  vec3 share = min(diffuse / max(fibletLights, vec3(1e-6)), vec3(1.0));
-  share = mix(vec3(fibletAcrossLine(vec3(-0.57735027, 0.57735027, 0.57735027))), share, fibletStanding);
-  return min(brightest, 1.0) * tint * mix(vec3(fibletFloor), vec3(1.0), share);
+  float share = min(dot(diffuse, vec3(1.0)) / max(fibletLights, 1e-6), 1.0);
+  return gentle_light(fibletStanding > 0.0 ? share : fibletAcrossLine(SHOULDER));
 }
 
 //@ fragment after //VTK::Normal::Impl

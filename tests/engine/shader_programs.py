@@ -47,6 +47,8 @@ EXCLUSIVE = (
     ("ONE_SEGMENT", "LEVEL_OF_DETAIL"),
     ("GATHER", "PEEL", "EDGES"),
     ("GATHER", "CROSS_LINE"),
+    ("LINE_ENDS", "TUBES"),
+    ("LINE_ENDS", "CROSS_LINE"),
     *(("SUBSAMPLES", other) for other in ("TUBES", "CROSS_LINE", "GATHER", "PEEL", "EDGES", "CLIP_REGION")),
     ("TUBE_ILLINOIS", "TUBE_ITP", "TUBE_NEWTON"),
     ("TUBE_VALUES", "TUBE_COLOURS"),
@@ -69,6 +71,7 @@ NEEDS: dict[str, tuple[tuple[str, ...], ...]] = {
     "TUBES": (("WIDE_LINES",),),
     "CROSS_LINE": (("WIDE_LINES",),),
     "SUBSAMPLES": (("WIDE_LINES",),),
+    "LINE_ENDS": (("WIDE_LINES",),),
     **dict.fromkeys(("SECOND_ROUND", "OPEN_FIBLETS"), (("CULL_PYRAMID",),)),
     **dict.fromkeys(("GATHER_SLICES", "GATHER_OUTSIDE", "PAINTED"), (("GATHER",),)),
     "PAINTED": tuple((source, "GATHER") for source in COLOURS),
@@ -244,7 +247,7 @@ def _filled(choice, names):
 
 
 SCREEN = (330, 410, NEWEST)
-FREE = {"CLIP_PLANES": (), "POINT_MASK": (), "CLIP_REGION": ()}  # what culls is drawn by nobody
+FREE = {"CLIP_PLANES": (), "POINT_MASK": (), "CLIP_REGION": (), "LINE_ENDS": ()}  # what culls is drawn by nobody
 # Whole programs of the rasteriser: both edges of the picture or none.
 RASTER = {"CLIPPING": (("CLIPPING_DEPTH",),), "REGION_FIELDS": (("CLIP_REGION",),)}
 GATHERED = ("GATHER_SLICES", "GATHER_OUTSIDE", "PAINTED")
@@ -254,7 +257,7 @@ PICTURE = ("blur", "copy", "gather", "mean", "reach", "seen_through", "tiles", "
 def _raster(vertex, fragment, versions, always, never=()):
     wide = fragment == "capsule"
     fragments = {"frag": f"fiblets/hardware_raster/{fragment}.frag"}
-    never = (*never, "ONE_SEGMENT", *(() if wide else ("WIDE_LINES", "TUBES", "CROSS_LINE")))
+    never = (*never, "ONE_SEGMENT", *(() if wide else ("WIDE_LINES", "TUBES", "CROSS_LINE", "LINE_ENDS")))
     return Kind({**vertex, **fragments}, versions, (*always, *(("WIDE_LINES",) if wide else ())), never, RASTER)
 
 

@@ -33,6 +33,7 @@ DRAWN = {
     "cut": ["CLIPPING", "CLIPPING_DEPTH", "LEVEL_OF_DETAIL"],
     "planes": ["CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES"],
     "wide": ["WIDE_LINES", "LEVEL_OF_DETAIL"],
+    "ends": ["WIDE_LINES", "LINE_ENDS", "LEVEL_OF_DETAIL"],
     "wide-planes": ["WIDE_LINES", "CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES", "LEVEL_OF_DETAIL"],
 }
 

@@ -58,6 +58,7 @@ def test_a_complete_picture_is_that_of_the_whole_set(made, camera, pipeline):
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize("style", [FibletStyle(radius=0.5, across=True), FibletStyle(tolerance=2.0),
+                                   FibletStyle(6.0, ends=True, edges=True),
                                    FibletStyle(values="curvature"), FibletStyle(values="arc_length")])  # fmt: skip
 def test_styles_are_those_of_the_whole_set(made, camera, style):
     whole, parts = made()

@@ -60,6 +60,7 @@ CHANGED = {
     ),
     "wide lines": What(features="WIDE_LINES"),
     "wide lines, shaded": What(features="CROSS_LINE, WIDE_LINES", resolve="-line_light, tube_shading"),
+    "ends": What(features="LINE_ENDS, WIDE_LINES"),
     "tubes": TUBES,
     "tubes, shaded": replace(
         TUBES,

@@ -180,6 +180,7 @@ SCENES = {
     "colours: logarithm": made("brain", scalars="weight", log_scale=True, clim=(1, 40)),
     "wide lines": made("brain", line_width=3),
     "wide lines, shaded": setting(line_width=3, tube_shading=True),
+    "ends": made("brain", style="ends"),
     "tubes": setting(tube_radius=0.5),
     "tubes, shaded": setting(tube_radius=0.5, tube_shading=True),
     "opacity": made("brain", opacity=0.5),

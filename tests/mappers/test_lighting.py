@@ -238,7 +238,14 @@ def test_lights_in_the_scene_shine_from_where_they_are_by_their_strength(rod, di
     assert np.allclose(seen, COLOUR * (0.75 * share(direction, a) + 0.25 * share(direction, b)), atol=2)
 
 
-def test_weak_lights_are_weak_and_coloured_ones_coloured(rod):
-    plain = COLOUR * share((1, 0, 0), SHOULDER @ TO_VIEW)
-    assert np.allclose(rod((1, 0, 0), headlight(0.4), effect=LineLight()), 0.4 * plain, atol=2)
-    assert np.allclose(rod((1, 0, 0), headlight(color="red"), effect=LineLight()), plain * (1, 0, 0), atol=2)
+@pytest.mark.parametrize("direction", RODS)
+def test_neither_weak_nor_coloured_lights_change_colours(rod, direction):
+    """As they change none of VTK's own lines; lights that stand in the scene count by their brightness."""
+    plain = COLOUR * share(direction, SHOULDER @ TO_VIEW)
+    for light in (headlight(0.2), headlight(3.0), headlight(color="red")):
+        assert np.allclose(rod(direction, light, effect=LineLight()), plain, atol=2)
+    a, b = unit(3, 1, 2), unit(-1, -4, 1)
+    for more in ({"intensity": 0.2}, {"intensity": 3.0}, {"color": "red"}):
+        assert np.allclose(rod(direction, lamp(*a, **more), effect=LineLight()), COLOUR * share(direction, a), atol=2)
+    seen = rod(direction, lamp(*a, color="red"), lamp(*b), effect=LineLight())
+    assert np.allclose(seen, COLOUR * (0.25 * share(direction, a) + 0.75 * share(direction, b)), atol=2)

@@ -46,6 +46,7 @@ CASES = {
     "values of streamlines": {"scalars": "number", "cmap": "viridis", "n_colors": 7, "show_scalar_bar": False},
     "values of points": {"scalars": "share", "cmap": "plasma", "clim": (0.2, 0.7), "show_scalar_bar": False},
     "computed values": {"scalars": "curvature", "log_scale": True, "show_scalar_bar": False},
+    "ends": {"style": "ends", "point_size": 7.0},
     "illuminated": {"illuminated": True, "line_width": 3.0},
 }
 
@@ -66,6 +67,24 @@ def test_page_shows_what_the_engine_shows(case, plotter, fiblets, visit, tmp_pat
     wrong, drawn = differing(visit(tmp_path / "figure.html").picture(), expected)
     assert drawn > 0.2
     assert wrong < 0.01
+
+
+def test_lines_of_a_page_keep_their_colours_in_dim_and_coloured_light(plotter, fiblets, visit, tmp_path):
+    plotter.remove_all_lights()
+    plotter.add_light(pv.Light(position=(40.0, -300.0, 90.0), light_type="scene light", color="red", intensity=0.3))
+    plotter.add_light(pv.Light(light_type="headlight", intensity=0.2))
+    plotter.add_fiblets(fiblets, color="white", line_width=3.0)
+    plotter.set_background("black")
+    plotter.picture.antialias = "coverage"
+    plotter.camera_position = "xz"
+    plotter.camera.zoom(1.4)
+    expected = plotter.screenshot(return_img=True)
+    shown = visit(plotter.fiblets.export_page(tmp_path / "figure.html")[0]).picture()
+    wrong, drawn = differing(shown, expected)
+    assert drawn > 0.1
+    assert wrong < 0.01
+    assert shown.max() == 255
+    assert np.ptp(shown, axis=2).max() <= 2
 
 
 def test_values_that_are_sent_alone_colour_as_those_in_the_file_do(plotter, fiblets, visit, tmp_path):

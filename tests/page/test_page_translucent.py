@@ -54,6 +54,7 @@ CASES = {
     "of streamlines": {"opacity": np.random.default_rng(1).random(300)},
     "of streamlines' colours": {"scalars": "number", "cmap": "viridis", "opacity": "sigmoid"},
     "of points, wide": {"opacity": "share", "line_width": 2.0},
+    "of ends": {"opacity": 0.3, "style": "ends", "point_size": 9.0, "color": "navy", "lighting": False},
     "of points' colours": {"scalars": "share", "opacity": "linear"},
 }  # fmt: skip
 

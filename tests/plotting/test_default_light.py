@@ -26,17 +26,20 @@ def brain():
     return compress(streamlines, per_point=("height",))
 
 
+HEADLIGHTS = {"headlight": {}, "dim": {"intensity": 0.2}, "red": {"color": "red"}}
+
+
 @pytest.mark.few(3)
 @pytest.mark.parametrize("camera", ["xy", "xz", "yz", "iso"])
-@pytest.mark.parametrize("lights", ["light kit", "three lights", "headlight"])
+@pytest.mark.parametrize("lights", ["light kit", "three lights", *HEADLIGHTS])
 def test_direction_colours_are_true_from_every_side(brain, camera, lights):
     """Lit beside unlit: most pixels keep nearly all of their brightness, none less than four fifths."""
     shown = {}
     for lighting in (True, False):
-        kind = "none" if lights == "headlight" else lights
+        kind = "none" if lights in HEADLIGHTS else lights
         plotter = pv.Plotter(off_screen=True, window_size=(160, 120), lighting=kind)
-        if lights == "headlight":
-            plotter.add_light(pv.Light(light_type="headlight"))
+        if lights in HEADLIGHTS:
+            plotter.add_light(pv.Light(light_type="headlight", **HEADLIGHTS[lights]))
         plotter.set_background("black")
         plotter.disable_anti_aliasing()
         plotter.add_fiblets(brain, lighting=lighting)

@@ -220,3 +220,14 @@ def test_browser_scenes_hold_lines_with_their_colours(plotter, fiblets):
     assert len(np.unique(rgba[:, 0], axis=0)) == 3
     assert '"colorMode": 2' in text
     np.testing.assert_array_equal(plotter.screenshot(), before)
+
+
+def test_points_left_out_take_their_numbers_with_them(plotter):
+    places = np.random.default_rng(0).uniform(-10.0, 10.0, (400, 3))
+    actor = plotter.add_halo_points(places, point_size=0.5)
+    plotter.render()
+    with pytest.warns(UserWarning, match="100 of 400 points"), readable(plotter.render_window, most=100):
+        data = pv.wrap(actor.mapper.GetInput())
+    ids = np.asarray(data.cell_data["streamline"])
+    assert len(ids) == 100
+    np.testing.assert_allclose(data.points, places[ids], atol=1e-4)

@@ -217,6 +217,7 @@ class FibletRenderer(LinesBehind):
             occlusion=self._occlusion,
             kept=kept,
             tubes=("TUBES",) if style.radius is not None else (),
+            ends=_ends(style),
             across=("CROSS_LINE",) if style.relief is not None else (),
             edges=("EDGES",) if style.edges and not style.exact else (),  # nobody reads those of a sample
         )
@@ -309,7 +310,7 @@ class FibletRenderer(LinesBehind):
             return no_counts(total)
         self._shared.bind()
         _, planes = self._shared.write_camera(*self._last)
-        features = [*self._decoding_features(), *(["CLIP_PLANES"] if planes else [])]
+        features = [*self._decoding_features(), *(["CLIP_PLANES"] if planes else []), *_ends(self._last[1])]
         culled = self._occlusion is not None
         return count_fiblets(
             self._census, total, self._chunks, features, self._pipeline, self._buffer, self._kept, culled
@@ -322,3 +323,7 @@ class FibletRenderer(LinesBehind):
             self._choice.release()
         super().release()
         self._query = None
+
+
+def _ends(style: FibletStyle) -> tuple[str, ...]:
+    return ("LINE_ENDS",) if style.ends else ()

@@ -9,6 +9,8 @@ from ..view import Style, check_at_least
 
 __all__ = ["FibletStyle"]
 
+LARGEST_DISC = 64.0  # pixels of the discs at ends; a VTK property may exceed it
+
 NO_WIDTH = 1e-3  # pixels: a brush that reaches none. 0 stands for thin lines.
 
 
@@ -32,6 +34,8 @@ class FibletStyle(Style):
     # millimetres. Draws tubes of that radius, closed by half spheres, instead of lines of a width in pixels: each pixel
     # shows the nearest point of their surface. `line_width` is then not looked at.
     radius: float | None = None
+    # draws discs about the first and the last point of each streamline, `line_width` pixels wide, instead of lines
+    ends: bool = False
     min_width: float = 1.0  # pixels, at least 1: tubes that are thinner are drawn as wide as that, unless `exact`
 
     def __post_init__(self) -> None:
@@ -41,13 +45,15 @@ class FibletStyle(Style):
         check_at_least("tolerance", self.tolerance, 0.0, "pixels")
         if self.radius is not None and not (math.isfinite(self.radius) and self.radius > 0.0):
             raise ValueError(f"radius is {self.radius}; give a finite number of millimetres above 0, or None for lines")
+        if self.ends and self.radius is not None:
+            raise ValueError("ends are discs and have no radius in millimetres; leave out radius, or ends")
 
     @property
     def half_width(self) -> float:
         """Pixels that a line reaches to either side of its axis at least; 0 for thin lines."""
         if self.radius is not None:
             return (NO_WIDTH if self.exact else self.min_width) / 2.0
-        return self.line_width / 2.0 if self.exact or self.line_width > 1.0 else 0.0
+        return self.line_width / 2.0 if self.exact or self.ends or self.line_width > 1.0 else 0.0
 
     @property
     def reach(self) -> float:
@@ -67,6 +73,6 @@ class FibletStyle(Style):
     @property
     def relief(self) -> str | None:
         """Contents of ``GBuffer.across``: ``'across'`` of wide lines, ``'normal'`` of tubes, or None for nothing."""
-        if not self.across or (self.radius is None and self.line_width <= 1.0):
+        if not self.across or self.ends or (self.radius is None and self.line_width <= 1.0):
             return None
         return "across" if self.radius is None else "normal"

@@ -50,6 +50,7 @@ FEATURES: dict[str, str] = {
     "RANK_TO_ID": "streamlines without points among the others",
     "TEXTURE_DATA": "data from buffer textures, where OpenGL has no storage buffers",
     "WIDE_LINES": "lines wider than one pixel",
+    "LINE_ENDS": "discs at the ends of streamlines, not lines",
     "LEVEL_OF_DETAIL": "far fiblets as one segment, among others",
     "ONE_SEGMENT": "far fiblets as one segment, none but these",
     "ONE_CLASS": "few fiblets, all drawn by one program",

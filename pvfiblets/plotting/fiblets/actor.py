@@ -44,6 +44,7 @@ _LIGHT = "light"
 _ROUND = "tube_shading"
 _LAYERS = "layers"
 _DENSITY = "density"
+_ENDS = "ends"
 _COUNTS = Scalars("density", "pixel_count")
 _SOME_LAYERS = 4
 
@@ -442,9 +443,11 @@ class FibletActor(FibletSettings, SelectableActor):
 
     def _usual_light(self) -> type | None:
         bodies = "tubes" in self._shades or (self._read_tube_shading() and self._mapper.line_width > 1.0)
+        bodies = bodies and self._style != _ENDS
         if self._style == _DENSITY:
             return LegendColours if self.prop.GetLighting() else None
-        if bodies or "illuminated" in self._shades or self._style != STYLES[0] or not self.prop.GetLighting():
+        lit = self._style in (STYLES[0], _ENDS)
+        if bodies or "illuminated" in self._shades or not lit or not self.prop.GetLighting():
             return None
         return LegendColours if self._scalars is not None and self._scalars.mapped else LineLight
 
@@ -458,7 +461,7 @@ class FibletActor(FibletSettings, SelectableActor):
         self._relight()
 
     def _take_tube_shading(self) -> None:
-        wanted = self._read_tube_shading()
+        wanted = self._read_tube_shading() and self._style != _ENDS
         if wanted != (_ROUND in self._mapper.effects):
             self._mapper.set_effect(_ROUND, TubeShading() if wanted else None)
 
@@ -468,6 +471,14 @@ class FibletActor(FibletSettings, SelectableActor):
 
     def _write_tube_radius(self, radius: float | None) -> None:
         self._shade("tubes", Tubes, None if radius is None else {"radius": float(radius)})
+        self._take_tubes()
+
+    def _take_tubes(self) -> None:
+        """Draw lines as tubes if they have a radius, unless only their ends are drawn."""
+        radius = self._read_tube_radius()
+        wanted = None if radius is None or self._style == _ENDS else Tubes(radius)
+        if wanted != self._mapper.effects.get("tubes"):
+            self._mapper.set_effect("tubes", wanted)
 
     def _read_style(self) -> str:
         return self._style
@@ -478,6 +489,9 @@ class FibletActor(FibletSettings, SelectableActor):
         self._style = style
         inks = {"halo": Ink(), "ink": Ink(None)}
         self._mapper.set_effect("ink", inks.get(style))
+        self._mapper.ends = style == _ENDS
+        self._take_tubes()
+        self._take_tube_shading()
         self._relight()
         self._count_lines()
         if style == "ink":

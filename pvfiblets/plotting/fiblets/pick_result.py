@@ -154,7 +154,7 @@ def everything(
     """Return all of an actor under an area of the window, hidden or not; ``None`` if it is empty."""
     # Arguments are as for `visible`. Lines left out by the actor's filters and cuts are not included. Visible lines of
     # the area are always included, even if only a line's pixel, not its middle, lies in it.
-    from pvfiblets.query.selection.screen import under_polygon
+    from pvfiblets.query.selection.screen import ends_under_polygon, under_polygon
 
     shown = shown_by(actor.mapper, renderer)
     if shown is None:
@@ -164,12 +164,15 @@ def everything(
     matrix = view.model_view_projection
     # What lies beside the picture is not under an area that reaches beyond it.
     sides = np.array([matrix[3] + sign * matrix[axis] for axis in (0, 1) for sign in (1.0, -1.0)])
-    under = under_polygon(
+    find, radius = under_polygon, 0.0
+    if actor.mapper.ends:
+        find, radius = ends_under_polygon, actor.mapper.drawn_width / 2.0
+    under = find(
         actor.fiblets,
         matrix,
         drawn.viewport[2:],
         shown.to_viewport(polygon),
-        tolerance * float(enlarged.max()),
+        (tolerance + radius) * float(enlarged.max()),
         streamlines=None if filtering is None else filtering.streamlines,
         points=None if filtering is None else filtering.points,
         planes=np.concatenate([sides, np.asarray(view.clip_planes).reshape(-1, 4)]),

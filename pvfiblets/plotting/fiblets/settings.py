@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from pvfiblets.engine.fiblets.style import LARGEST_DISC
 from pvfiblets.plotting import shared_settings as shared
 from pvfiblets.plotting.fiblets.looks import check_look
-from pvfiblets.plotting.setting_places import COLOURS, LATER, MAPPER, OPTIONS, OWN, Effect, Switch
+from pvfiblets.plotting.setting_places import COLOURS, LATER, MAPPER, OPTIONS, OWN, PROPERTY, Effect, Switch
 from pvfiblets.plotting.settings import Row, Setting, Settings, number, truth
 
-STYLES = ("surface", "halo", "ink", "density")  # values of `FibletSettings.style`
+STYLES = ("surface", "halo", "ink", "density", "ends")  # values of `FibletSettings.style`
 
 TONES = ("log", "sqrt", "linear")  # values of `FibletSettings.density_tone`
 
@@ -137,14 +138,24 @@ class FibletSettings(Settings):
         where=OWN,
         check=_line_width,
         row=Row("Line width", "Pixels.", "Lines", "number", 1.0, limits=(0.25, 64.0),
-                matters=lambda s: s["tube_radius"] is None),
+                matters=lambda s: s["tube_radius"] is None and s["style"] != "ends"),
+    )  # fmt: skip
+    point_size: Setting[float] = Setting(
+        None,
+        "Diameter of the discs of ``style='ends'``, pixels from 1 to 64.",
+        argument="Diameter of the discs of ``style=\"ends\"``, pixels from 1 to 64; the theme's by default.",
+        kind="float | None",
+        where=PROPERTY,
+        check=lambda name, size: number(name, size, 1.0, LARGEST_DISC, "pixels"),
+        row=Row("Point size", "Pixels.", "Lines", "number", 5.0, limits=(1.0, LARGEST_DISC),
+                matters=lambda s: s["style"] == "ends"),
     )  # fmt: skip
     style: Setting[str] = Setting(
         STYLES[0],
         "Appearance of lines.\n\n"
         "``'surface'``: lines in their colours. ``'halo'``: black lines in white halos. ``'ink'``: black on a\n"
         "light background and white on a dark one, in halos of the background's colour. ``'density'``: sums\n"
-        "of overlapping lines.\n\n"
+        "of overlapping lines. ``'ends'``: discs at both ends of every streamline, and nothing between.\n\n"
         "``'halo'`` and ``'ink'`` are drawings in ink (Everts et al. 2009), ``'halo'`` best on white:\n"
         "all lines have one colour, no light, and default halos. Colours and ``lighting`` are kept and\n"
         "return with ``'surface'``, which removes the halos.\n\n"
@@ -152,14 +163,18 @@ class FibletSettings(Settings):
         "that grows with their number (``density_tone``), over the background. The second number of\n"
         "``clim`` is the number at full brightness, by default that of the fullest pixel. Lines are a pixel\n"
         "wide, without light. With ``scalars=\"density\"`` a colour map and a scalar bar show streamlines per\n"
-        "pixel.",
+        "pixel.\n\n"
+        "``'ends'`` draws discs of ``point_size`` pixels about the first and the last point. They are coloured,\n"
+        "lit, filtered, cut and picked as the lines are; an end shows where the segment at it does. Line\n"
+        "widths and tubes are kept for the other styles.",
         argument="``\"density\"`` adds up light where streamlines overlap, ``\"halo\"`` draws black lines in "
-        "white halos, ``\"ink\"`` lines and halos in colours that suit the background.",
+        "white halos, ``\"ink\"`` lines and halos in colours that suit the background, ``\"ends\"`` discs of "
+        "``point_size`` pixels at both ends of every streamline.",
         choices=STYLES,
         where=LATER,
         row=Row("Style", "Ink: lines of one colour, with halos that show depth.", "Lines",
                 choices=[("surface", "coloured lines"), ("halo", "ink and halos"), ("ink", "ink on any ground"),
-                         ("density", "density")]),
+                         ("density", "density"), ("ends", "end points")]),
     )  # fmt: skip
     density_tone: Setting[str] = Setting(
         TONES[0],

@@ -20,12 +20,13 @@ from ...codec.layout import PAGE_BITS, unpack
 from ...codec.streamline_ranges import ranges_of
 from . import screen_kernels
 from .bits import stretch
+from .endpoints import end_points
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from ..regions.shapes import Region
 
-__all__ = ["Under", "area_distances", "under_polygon"]
+__all__ = ["Under", "area_distances", "ends_under_polygon", "under_polygon"]
 
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -106,6 +107,46 @@ def under_polygon(
     except IndexError:
         fiblets.verify()  # raises for a damaged file; other errors pass
         raise
+
+
+def ends_under_polygon(
+    fiblets: FibletSet,
+    matrix: npt.ArrayLike,
+    size: tuple[float, float],
+    polygon: npt.ArrayLike,
+    tolerance: float = 0.0,
+    *,
+    streamlines: npt.NDArray[np.bool_] | None = None,
+    points: npt.NDArray[np.uint32] | None = None,
+    planes: npt.ArrayLike | None = None,
+    region: Region | None = None,
+) -> Under:
+    """Find the streamlines with an end under an area of the screen, occluded ones too."""
+    transform, where = np.array(matrix, np.float64), ranges_of(fiblets, np.arange(fiblets.n_streamlines))
+    at, counts = end_points(fiblets).reshape(-1, 3), where.points
+    rows = np.flatnonzero(np.isfinite(at).all(axis=1))
+    if streamlines is not None:
+        rows = rows[streamlines[rows // 2]]
+    if points is not None:
+        last = where.point + np.maximum(counts - 1, 0)
+        beside = [np.minimum(where.point + 1, last), np.maximum(last - 1, where.point)]
+        for pair in ([where.point, last], beside):
+            number = np.stack(pair, axis=1).ravel()[rows]
+            rows = rows[(points[number >> 5] >> (number & 31).astype(np.uint32) & 1) != 0]
+    whole = np.column_stack([at[rows], np.ones(len(rows))])
+    rows = rows[(whole @ _cuts(transform, planes).T >= 0.0).all(axis=1)]
+    if region is not None:
+        rows = rows[region.contains(at[rows])]
+    clip = np.column_stack([at[rows], np.ones(len(rows))]) @ transform.T
+    inside = area_distances(polygon, (clip[:, :2] / clip[:, 3:] + 1.0) * 0.5 * np.array(size)) <= tolerance
+    rows, depths = rows[inside], (0.5 * clip[:, 2] / clip[:, 3] + 0.5)[inside]
+    order = np.argsort(depths, kind="stable")
+    rows, depths = rows[order], depths[order]
+    _, first = np.unique(rows // 2, return_index=True)
+    first.sort()
+    ids = rows[first] // 2
+    places = np.where(rows[first] % 2 == 1, np.maximum(counts[ids] - 1, 0), 0).astype(np.float64)
+    return Under(ids, places, depths[first])
 
 
 def _under_in_parts(

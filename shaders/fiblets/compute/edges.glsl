@@ -14,6 +14,9 @@ void store_edges(ivec2 pixel, Segment segment) {
     Hit hit;
     if (!tube_found(body, c0, c1, centre, hit)) return;
     word = tube_edges(body, c0, c1, centre, hit);
+#elif FEATURE_LINE_ENDS
+    vec2 run = piece.b.xy - piece.a.xy, from = centre - piece.a.xy;
+    word = capsule_edges(from - end_at(piece, from, run, half_line_width) * run, vec2(0.0), half_line_width);
 #elif FEATURE_WIDE_LINES
     word = capsule_edges(centre - piece.a.xy, piece.b.xy - piece.a.xy, half_line_width);
 #else

@@ -6,6 +6,8 @@
 // FIBLET_MAX_POINTS + 2 bits matter: two words.
 //
 // Without the feature all points are kept, and nothing is left of this file but that.
+//
+// FEATURE_LINE_ENDS: drawn are the first and the last segment of a streamline only (fiblets/segments/ends.glsl), where the mask keeps them.
 
 #include "fiblets/decode/words.glsl"
 #include "fiblets/attributes/streamline_index.glsl"
@@ -53,15 +55,23 @@ bool point_bit(uint i) { return (((i < 32u ? mask_low : mask_high) >> (i & 31u))
 // Whether segment i is drawn; where a neighbour is not, the line starts or ends here.
 bool mask_segment(uint i, inout bool start, inout bool cap) {
     bool here = point_bit(i);
+#if FEATURE_LINE_ENDS
+    return (start || cap) && here && (mask_segments == 0u || point_bit(i + 1u));
+#else
     start = start || !here || (i == 0u ? !mask_before : !point_bit(i - 1u));
     if (mask_segments == 0u) return here;
     bool there = point_bit(i + 1u), last = i + 1u >= mask_segments;
     cap = cap || !there || ((!last || mask_joined) && !point_bit(i + 2u));
     return here && there;
+#endif
 }
 
 #else
 void begin_point_mask(uint f) {}
 bool all_points_shown() { return true; }
+#if FEATURE_LINE_ENDS
+bool mask_segment(uint i, inout bool start, inout bool cap) { return start || cap; }
+#else
 bool mask_segment(uint i, inout bool start, inout bool cap) { return true; }
+#endif
 #endif

@@ -11,15 +11,9 @@
 #endif
 
 #if FEATURE_PAINT_LIGHT
-uniform vec3 paint_light;          // unit vector to the light, data coordinates
-const float PAINT_FLOOR = 0.8;
+#include "frame/gentle_light.glsl"
 
-// As resolve/line_light.glsl dims the nearest line.
-vec3 lit(vec3 c, vec3 tangent) {
-    float along = dot(tangent, paint_light);
-    along *= along;
-    return c * (PAINT_FLOOR + (1.0 - PAINT_FLOOR) * (1.0 - along * along));
-}
+uniform vec3 paint_light;          // unit vector to the light, data coordinates
 #endif
 
 // tangent: unit vector, data coordinates.
@@ -27,7 +21,7 @@ vec4 painted(uint streamline, vec3 tangent, float value) {
     vec4 c = line_colour(streamline, tangent, value);
     float w = 1.0;
 #if FEATURE_PAINT_LIGHT
-    c.rgb = lit(c.rgb, tangent);
+    c.rgb *= gentle_light(across_line(tangent, paint_light));   // as resolve/line_light.glsl dims the nearest line
 #endif
 #if FEATURE_PAINT_ALPHA
     w = weight_of(c.a, streamline, value);

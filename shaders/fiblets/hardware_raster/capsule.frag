@@ -48,7 +48,12 @@ void main() {
     shade(hit.t, 1.0, hit.z);
 }
 #else
+#if FEATURE_LINE_ENDS
+#include "fiblets/segments/clipped_segment.glsl"
+#include "fiblets/segments/ends.glsl"
+#else
 #include "fiblets/segments/joint.glsl"
+#endif
 
 #if FEATURE_CLIP_PLANES
 // Heights over clip w are linear in the window; `away` is how far the pixel is from the segment's point s.
@@ -65,11 +70,18 @@ bool brush_kept(float s, vec2 away) {
 
 void main() {
     vec2 run = varying_end.xy - varying_start.xy, centre = gl_FragCoord.xy - varying_start.xy;
+#if FEATURE_LINE_ENDS
+    bool start = (varying_ids.w & 0x10000u) != 0u, cap = (varying_ids.w & 0x20000u) != 0u;
+    float s = end_at(ClippedSegment(varying_start, varying_end, 0.0, 1.0, start, cap, 0.0, false), centre, run, half_line_width);
+    if (s < 0.0) discard;
+    vec2 away = centre - s * run;
+#else
     float foot = dot(centre, run) / max(dot(run, run), 1e-12);
     precise float s = clamp(foot, 0.0, 1.0);
     vec2 away = centre - s * run;
     if (foot < 0.0 && (varying_ids.w & 0x10000u) == 0u || dot(away, away) > half_line_width * half_line_width) discard;
     if (foot > 1.0 && beyond_joint(unpacked_onward(varying_onward), centre - run)) discard;
+#endif
 #if FEATURE_CLIP_PLANES
     if (!brush_kept(s, away)) discard;
 #endif
@@ -78,7 +90,11 @@ void main() {
     out_across = clamp(dot(vec2(-run.y, run.x), centre) / (half_line_width * sqrt(max(dot(run, run), 1e-12))), -1.0, 1.0);
 #endif
 #if FEATURE_EDGES
+#if FEATURE_LINE_ENDS
+    out_edges = capsule_edges(away, vec2(0.0), half_line_width);
+#else
     out_edges = capsule_edges(centre, run, half_line_width);
+#endif
 #endif
     shade(s, varying_start.w / varying_end.w, depth);
 }

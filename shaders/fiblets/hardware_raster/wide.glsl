@@ -14,6 +14,8 @@ vec4 corner_of(ClippedSegment piece, int corner) {
     vec2 run = piece.b.xy - piece.a.xy;
 #if FEATURE_TUBES
     float size = length(run), reach = piece.reach, before = reach;
+#elif FEATURE_LINE_ENDS
+    float size = length(run), reach = half_line_width + ROUNDING, before = reach;   // a short segment's end reaches beyond its start
 #else
     float size = length(run), reach = half_line_width + ROUNDING, before = piece.start ? reach : ROUNDING;
 #endif

@@ -11,7 +11,8 @@
 // Symbols
 //   a, b         ends of the part: x, y in pixels, z depth, w clip w
 //   t0, t1       where they lie on the segment
-//   start, cap   the line starts at a, ends at b: nothing is drawn before or after that this part would be joined to
+//   start, cap   the line starts at a, ends at b: nothing is drawn before or after that this part would be joined to; with
+//                FEATURE_LINE_ENDS: a, or b, is an end of the streamline, and not cut away
 //   s, u         positions along the part in the window, where depth is linear, and along the segment in space
 //
 // Tubes are not clipped: every pixel of their outline (fiblets/segments/line_tube.glsl) is tested. Their a, b, t0 and t1 are
@@ -52,6 +53,19 @@ Vertex vertex_of(vec3 p) {
     return Vertex(p, clip, window, inside);
 }
 
+// Whether a part begins, or ends, as its segment does, or where it is cut.
+bool end_of_part(bool end, bool is_cut) {
+#if FEATURE_LINE_ENDS
+    return end && !is_cut;
+#else
+    return end || is_cut;
+#endif
+}
+
+ClippedSegment cut_piece(vec4 a, vec4 b, float t0, float t1, ClippedSegment whole) {
+    return ClippedSegment(a, b, t0, t1, end_of_part(whole.start, t0 > 0.0), end_of_part(whole.cap, t1 < 1.0), 0.0, false);
+}
+
 // Each of the next returns false if nothing of the segment is left.
 
 bool clip_in_space(Vertex from, Vertex to, inout ClippedSegment piece) {
@@ -61,7 +75,7 @@ bool clip_in_space(Vertex from, Vertex to, inout ClippedSegment piece) {
     if (!clip_by_planes(from.local, to.local, t0, t1)) return false;
     if (t0 > 0.0) piece.a = to_window(from.clip + t0 * (to.clip - from.clip));
     if (t1 < 1.0) piece.b = to_window(from.clip + t1 * (to.clip - from.clip));
-    piece = ClippedSegment(piece.a, piece.b, t0, t1, piece.start || t0 > 0.0, piece.cap || t1 < 1.0, 0.0, false);
+    piece = cut_piece(piece.a, piece.b, t0, t1, piece);
     return true;
 }
 
@@ -69,7 +83,7 @@ bool clip_in_window(Vertex from, Vertex to, inout ClippedSegment piece) {
     float t0, t1;
     bool any_part = clip_window(from.window.xy, to.window.xy, t0, t1);
     precise vec4 run = to.window - from.window, a = from.window + t0 * run, b = t1 < 1.0 ? from.window + t1 * run : to.window;
-    piece = ClippedSegment(a, b, t0, t1, piece.start || t0 > 0.0, piece.cap || t1 < 1.0, 0.0, false);
+    piece = cut_piece(a, b, t0, t1, piece);
     return any_part;
 }
 

@@ -55,7 +55,11 @@ void begin_peel(uint streamline, float first_point) {
 void peel_segment(vec2 a, vec2 b, float r, float steps) {
     precise vec2 run = b - a;
     peel_steps = steps;
+#if FEATURE_LINE_ENDS
+    peel_reach = 0.0;   // discs do not join
+#else
     peel_reach = 2.0 * WIDTHS * r * max(steps, 1.0) / max(length(run), 1e-3);
+#endif
 }
 
 #else

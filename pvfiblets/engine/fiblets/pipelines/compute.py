@@ -343,7 +343,7 @@ class ComputePipeline:
     def _planning(self, request: DrawRequest) -> list[str]:
         """Features of the program that plans a picture."""
         one = ("ONE_CLASS",) if self._one_class else ()
-        return [*request.decoding, *request.detail, *request.planes, *request.tubes, *request.kept.culling, *one]
+        return [*request.decoding, *request.detail, *request.planes, *request.tubes, *request.culling, *one]
 
     def _program(self, stage: str, features: Sequence[str]) -> moderngl.ComputeShader:
         return self._programs.compute(f"fiblets/compute/{stage}.comp", [*features, *self._forms])

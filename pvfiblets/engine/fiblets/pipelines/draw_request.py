@@ -50,9 +50,9 @@ class DrawRequest:
         Tests what earlier depth hides.
     kept : Visibility
         The caller's filter and region.
-    tubes, across, edges, samples : tuple of str
-        ``TUBES``, ``CROSS_LINE``, ``EDGES`` and ``SUBSAMPLES``, if asked for. With tubes the uniform block ``Tubes`` is
-        bound too.
+    tubes, ends, across, edges, samples : tuple of str
+        ``TUBES``, ``LINE_ENDS``, ``CROSS_LINE``, ``EDGES`` and ``SUBSAMPLES``, if asked for. With tubes the uniform
+        block ``Tubes`` is bound too.
     peel : Peel, optional
         The picture begins behind these layers.
     gather : Gather, optional
@@ -74,6 +74,7 @@ class DrawRequest:
     occlusion: Occlusion | None
     kept: Visibility
     tubes: tuple[str, ...] = ()
+    ends: tuple[str, ...] = ()
     across: tuple[str, ...] = ()
     edges: tuple[str, ...] = ()
     samples: tuple[str, ...] = ()
@@ -83,9 +84,9 @@ class DrawRequest:
 
     @property
     def wide(self) -> tuple[str, ...]:
-        """``WIDE_LINES``, if they are; what tubes, and places across, ask of drawing programs goes along."""
+        """``WIDE_LINES``, if they are; what tubes, ends, and places across, ask of drawing programs goes along."""
         wide = ("WIDE_LINES",) if self.line_width > 0.0 or self.tubes else ()
-        return (*wide, *self.tubes, *self.across)
+        return (*wide, *self.tubes, *self.ends, *self.across)
 
     @property
     def extra(self) -> tuple[str, ...]:
@@ -109,10 +110,15 @@ class DrawRequest:
         return halfway and all("clusters" in chunk.buffers for chunk in self.chunks)
 
     @property
+    def culling(self) -> tuple[str, ...]:
+        """Features of programs that look for fiblets to leave out, beside occlusion."""
+        return (*self.kept.culling, *self.ends)
+
+    @property
     def cluster_features(self) -> tuple[str, ...]:
         """Features of the programs that test clusters (``fiblets/compute/cluster_box.glsl``)."""
         assert self.occlusion is not None
-        return (*self.decoding, *self.planes, *self.tubes, *self.kept.culling, self.occlusion.feature)
+        return (*self.decoding, *self.planes, *self.tubes, *self.culling, self.occlusion.feature)
 
     @property
     def cutting(self) -> tuple[str, ...]:

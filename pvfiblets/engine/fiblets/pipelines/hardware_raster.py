@@ -335,7 +335,7 @@ class RasterPipeline(abc.ABC):
             *request.detail,
             *clipping,
             *request.planes,
-            *request.kept.culling,
+            *request.culling,
         )
         every = (*every, *request.peeling, *request.gathering)
         return [*self.features, *every, *culling]

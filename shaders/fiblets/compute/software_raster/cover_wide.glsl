@@ -9,6 +9,8 @@
 //   foot, s      where on the piece a pixel is nearest to it, and the same within the piece
 //   away         from there to the pixel
 //
+// FEATURE_LINE_ENDS: of these pixels only those of the discs of fiblets/segments/ends.glsl.
+//
 // FEATURE_CULL_PYRAMID: a segment behind the farthest depth of the pixels around it is left out (culling/pyramid_lookup.glsl).
 //
 // FEATURE_SUBSAMPLES: sixteen of the pixels are samples of one of the picture. PLACES tells how far each lies from the middle of its square,
@@ -16,6 +18,9 @@
 
 #include "fiblets/compute/software_raster/brush_planes.glsl"
 #include "fiblets/segments/joint.glsl"
+#if FEATURE_LINE_ENDS
+#include "fiblets/segments/ends.glsl"
+#endif
 #if FEATURE_CULL_PYRAMID
 #include "culling/pyramid_lookup.glsl"
 uniform int tests_segments;      // 0 as long as there is no pyramid
@@ -62,7 +67,12 @@ void cover(Segment segment) {
     vec2 left = (steep ? vec2(d.x, -d.y) : vec2(-d.y, d.x)) * sqrt(inverse) / r;
     float slope = abs(run.x) > 1e-6 ? run.y / run.x : 0.0;
     float reach = r * sqrt(1.0 + slope * slope) + ASIDE * (1.0 + abs(slope));  // half the capsule's height over a column
-    float behind = piece.start ? r : r * min(abs(slope), 1.0), least = piece.start ? -3.0e38 : 0.0;  // before the start
+#if FEATURE_LINE_ENDS
+    float behind = r;   // a short segment's end reaches beyond its start
+#else
+    float behind = piece.start ? r : r * min(abs(slope), 1.0);  // before the start
+#endif
+    float least = piece.start ? -3.0e38 : 0.0;
     vec2 before = run.x < 0.0 ? vec2(r, behind) : vec2(behind, r);
     int column0 = int(max(ceil(min(from.x, to.x) - before.x - 0.5 - ASIDE), 0.0));
     int column1 = int(min(floor(max(from.x, to.x) + before.y - 0.5 + ASIDE), size.x - 1.0));
@@ -75,9 +85,17 @@ void cover(Segment segment) {
             vec2 aside = sample_aside(texel), centre = vec2(x, float(row) + 0.5) + (steep ? aside.yx : aside) - from;
             float foot = dot(centre, run) * inverse;
             precise float s = clamp(foot, 0.0, 1.0);
+#if FEATURE_LINE_ENDS
+            s = end_at(segment.piece, steep ? centre.yx : centre, d, r);
+#endif
             vec2 away = centre - s * run;
             precise float z = piece.a.z + (piece.b.z - piece.a.z) * s;
-            bool covered = foot >= least && dot(away, away) <= r * r && !(foot > 1.0 && beyond_joint(onward, centre - run)) && brush_kept(heights, s, steep ? away.yx : away);
+#if FEATURE_LINE_ENDS
+            bool covered = s >= 0.0;
+#else
+            bool covered = foot >= least && dot(away, away) <= r * r && !(foot > 1.0 && beyond_joint(onward, centre - run));
+#endif
+            covered = covered && brush_kept(heights, s, steep ? away.yx : away);
             vec3 relief = vec3(clamp(dot(left, centre), -1.0, 1.0), 0.0, 0.0);
             if (covered) put(Fragment(texel, z, s, relief), segment);
         }

@@ -139,5 +139,9 @@ void draw_until(uint end) {
 // Draws fiblet f and the segment that joins it to the next.
 void draw_fiblet(uint f) {
     begin_drawing(f);
+#if FEATURE_LINE_ENDS
+    draw_until(polyline.end ? polyline.count : 1u);   // all that lies before the line's end is only decoded
+#else
     draw_until(polyline.count);
+#endif
 }
