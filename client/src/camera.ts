@@ -82,8 +82,12 @@ export interface CameraState {
 
 export type Bounds = [number, number, number, number, number, number];
 
+const FRONT: CameraState = {
+  position: [0, 0, 1], focal_point: [0, 0, 0], up: [0, 1, 0], view_angle: 30, parallel: false, parallel_scale: 1,
+};
+
 export class Camera {
-  constructor(public state: CameraState) {}
+  constructor(public state: CameraState = FRONT) {}
 
   get forward(): Vec {
     return unit(sub(this.state.focal_point, this.state.position));
@@ -167,14 +171,25 @@ export class Camera {
     else s.position = add(s.focal_point, sub(s.position, s.focal_point), 1 / factor);
   }
 
-  /** Look along a direction at all there is, as VTK's ResetCamera does. */
-  lookAlong(direction: Vec, up: Vec, bounds: Bounds): void {
-    const s = this.state, middle: Vec = [(bounds[0] + bounds[1]) / 2, (bounds[2] + bounds[3]) / 2, (bounds[4] + bounds[5]) / 2];
-    const radius = Math.hypot(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]) / 2 || 1;
-    const away = radius / Math.sin((s.view_angle * Math.PI) / 360);
-    s.focal_point = middle;
-    s.position = add(middle, unit(direction), -away);
+  /** Look along a direction at all there is, as near as the picture's edges allow: `point_camera` of plotting/viewpoints.py. */
+  lookAlong(direction: Vec, up: Vec, bounds: Bounds, aspect: number): void {
+    const s = this.state, [low, high] = [0, 1].map((end) => [0, 1, 2].map((axis) => bounds[2 * axis + end]));
+    const radius = norm(sub(high as Vec, low as Vec)) / 2 || 1, narrow = Math.min(aspect, 1);
+    s.view_angle = 30;
     s.up = up;
-    s.parallel_scale = radius;
+    s.focal_point = scaled(add(low as Vec, high as Vec), 0.5);
+    s.position = add(s.focal_point, unit(direction), -radius / Math.sin(Math.atan(Math.tan(Math.PI / 12) * narrow)));
+    s.parallel_scale = radius / narrow;
+    const window = product(this.projection(aspect, bounds), this.view());
+    let reach = 0;
+    for (let i = 0; i < 27; ++i) {
+      const part = [i % 3, Math.floor(i / 3) % 3, Math.floor(i / 9)];
+      if (part.filter((one) => one === 1).length !== 1) continue; // the middle of an edge of the box
+      const [x, y, , w] = apply(window, part.map((one, axis) => low[axis] + (one / 2) * (high[axis] - low[axis])) as Vec);
+      reach = Math.max(reach, Math.abs(x / w), Math.abs(y / w));
+    }
+    if (!(reach > 0 && reach < Infinity)) return;
+    if (s.parallel) s.parallel_scale *= reach / 0.92;
+    else s.view_angle *= reach / 0.92;
   }
 }

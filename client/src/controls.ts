@@ -144,13 +144,15 @@ export class Controls {
   }
 
   private views(): HTMLElement {
-    const { renderer } = this, start = structuredClone(renderer.camera.state);
+    const { renderer } = this;
     const buttons = VIEWS.map(([name, direction, up]) => button(name, () => {
-      renderer.camera.lookAlong(direction, up, renderer.scene.bounds);
+      renderer.look(direction, up);
       renderer.change();
     }));
     buttons.push(button("Reset", () => {
-      Object.assign(renderer.camera.state, structuredClone(start));
+      const { camera } = renderer.scene;
+      if (camera) Object.assign(renderer.camera.state, structuredClone(camera));
+      else renderer.look();
       renderer.change();
     }));
     buttons.push(button("Save image", () => this.save()));
@@ -446,7 +448,7 @@ export class Controls {
     this.axes.forEach((name, i) => {
       const way = scaled([0, 1, 2].map((axis) => (axis === i >> 1 ? 1 : 0)) as Vec, i & 1 ? 1 : -1), [x, y, z] = apply(view, way, 0);
       name.style.transform = `translate(${(x * 32).toFixed(1)}px, ${(-y * 32).toFixed(1)}px)`;
-      name.style.opacity = String(0.35 + 0.65 * (0.5 + z / 2));
+      name.style.zIndex = String(Math.round(100 * z)); // the nearer ones lie over the others
     });
   }
 }

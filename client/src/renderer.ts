@@ -24,6 +24,7 @@ const TILE = 16;       // pixels; shaders/page/tile_size.glsl
 const FAR_TILE = 4;    // pixels; shaders/page/far_tile_size.glsl
 const LONGEST_SPRITE = 40; // pixels; squares of more are not drawn by every device
 const FARTHEST = 0x3f800000;  // 1.0
+const OBLIQUE: Vec = [1, -0.8, -0.45]; // from the left, front and above: DIRECTIONS of pvfiblets/plotting/viewpoints.py
 const LIGHTS = { none: 0, line: 1, illuminated: 2 };
 
 /**
@@ -91,9 +92,11 @@ export class Renderer {
   private asked = 0;
   private still = 0;
   private waiting: (() => void)[] = [];
+  private looked: { direction: Vec; up: Vec; state: string } | null = null; // the last call of `look`, and its camera
 
   constructor(readonly canvas: HTMLCanvasElement, public scene: Scene, private data: Uint8Array[], private archives: Map<number, Archive>) {
     this.camera = new Camera(structuredClone(scene.camera));
+    if (!scene.camera) this.look();
     const gl = canvas.getContext("webgl2", {
       alpha: false,
       antialias: false,
@@ -335,6 +338,13 @@ export class Renderer {
     return now - shownAt > Math.max(REFRESH, LATER * (shownAt - begun)) && (!this.frames || left > REFRESH);
   }
 
+  /** Look along a direction at everything; in a window of another shape again, until the camera is moved. */
+  look(direction: Vec = OBLIQUE, up: Vec = [0, 0, 1]): void {
+    const { camera, canvas } = this;
+    camera.lookAlong(direction, up, this.scene.bounds, canvas.clientWidth / canvas.clientHeight || 1);
+    this.looked = { direction, up, state: JSON.stringify(camera.state) };
+  }
+
   /** Have the canvas as large as it is shown. */
   private fit(): void {
     const { gl, canvas } = this, ratio = window.devicePixelRatio || 1, most = gl.getParameter(gl.MAX_TEXTURE_SIZE) - 2;
@@ -344,6 +354,7 @@ export class Renderer {
     canvas.width = this.width = width;
     canvas.height = this.height = height;
     this.ratio = ratio;
+    if (this.looked?.state === JSON.stringify(this.camera.state)) this.look(this.looked.direction, this.looked.up);
     for (const texture of Object.values(this.textures)) gl.deleteTexture(texture);
     for (const buffer of Object.values(this.buffers)) gl.deleteFramebuffer(buffer);
     this.translucent?.release();

@@ -108,13 +108,12 @@ export type AnyLayer = FibletLayer | SurfaceLayer | ImageLayer;
 export interface Scene {
   title: string;
   background: [Vec, Vec];
-  camera: CameraState;
+  camera?: CameraState; // none: everything, fitted to the window
   bounds: Bounds;
   lights: Light[];
   layers: AnyLayer[];
   bars: Bar[];
   letters: boolean;     // of orientation
-  axes: boolean;
   antialias: boolean;
   data: { bytes: number; file?: string }[];
 }

@@ -72,6 +72,8 @@ def page(paths: list[str], *, output: str, title: str | None, **looks: Any) -> N
     plotter, scene = make_plotter(off_screen=True, size=None), None
     try:
         scene = fill(plotter, paths, **looks)
+        if scene is None and looks["view"] is None:
+            plotter.camera_set = False  # the page fits its first view to the reader's window
         for path in export_page(plotter, output, title=title or PurePosixPath(paths[0]).name):
             print(f"{path}: {path.stat().st_size:,} bytes")
     finally:

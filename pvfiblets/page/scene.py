@@ -31,15 +31,6 @@ class CameraPlace:
     parallel: bool = False
     parallel_scale: float = 1.0
 
-    @classmethod
-    def along(cls, bounds: Bounds, direction: Vector = (1.0, 1.0, -1.0), up: Vector = (0.0, 0.0, 1.0)) -> CameraPlace:
-        """Look along a direction at all that lies within bounds."""
-        low, high = np.array(bounds[::2]), np.array(bounds[1::2])
-        middle, radius = (low + high) / 2.0, float(np.linalg.norm(high - low)) / 2.0 or 1.0
-        away = np.array(direction) / np.linalg.norm(direction) * radius / np.sin(np.radians(15.0))
-        place = middle - away
-        return cls(_vector(place), _vector(middle), up, 30.0, False, radius)
-
 
 @dataclass(frozen=True)
 class Light:
@@ -64,7 +55,7 @@ class PageScene:
     title: str  # of the page
     # at the bottom and at the top, RGB from 0 to 1
     background: tuple[Vector, Vector] = ((1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
-    camera: CameraPlace | None = None  # none: an oblique view of everything
+    camera: CameraPlace | None = None  # none: an oblique view of everything, fitted to the reader's window
     lights: list[Light] = field(default_factory=list)  # A headlight where there is none
     # as `client/src/scene.ts` has them; `fiblet_layer` makes one
     layers: list[dict[str, Any]] = field(default_factory=list)
@@ -99,7 +90,7 @@ class PageScene:
         return {
             "title": self.title,
             "background": self.background,
-            "camera": (self.camera or CameraPlace.along(self.bounds)).__dict__,
+            **({} if self.camera is None else {"camera": self.camera.__dict__}),
             "bounds": self.bounds,
             "lights": [light.plain() for light in self.lights or [Light((1.0, 1.0, 1.0), view=(0.0, 0.0, 1.0))]],
             "layers": self.layers,
@@ -152,11 +143,6 @@ def fiblet_layer(
 def encoded(table: npt.NDArray[np.uint8]) -> str:
     """Return a table of RGBA as JSON has it."""
     return base64.b64encode(np.ascontiguousarray(table, np.uint8).tobytes()).decode()
-
-
-def _vector(values: npt.NDArray[Any]) -> Vector:
-    x, y, z = (float(v) for v in values)
-    return x, y, z
 
 
 def _bounds(values: npt.NDArray[Any]) -> Bounds:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.page_scene import camera_place, page_and_actors
+from pvfiblets.plotting.viewpoints import point_camera
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.notebook_state import NotebookState
@@ -165,6 +166,8 @@ def page_view(plotter: Any, *, title: str | None = None, height: int = 480, pict
 
     if isinstance(height, bool) or int(height) != height or not _HEIGHTS[0] <= height <= _HEIGHTS[1]:
         raise ValueError(f"height is {height!r}; give a whole number of pixels from {_HEIGHTS[0]} to {_HEIGHTS[1]}")
+    if not plotter.renderer.camera_set:
+        point_camera(plotter, "oblique")  # page and plotter share one camera
     scene, names = page_and_actors(plotter, title=title)
     size = sum(map(len, scene.blobs))
     if size > LARGEST_FILE:

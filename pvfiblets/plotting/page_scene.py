@@ -63,11 +63,7 @@ def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScen
     unable, names = add_all(scene, plotter)
     if unable:
         warnings.warn(f"the page leaves out {', '.join(unable)}: it cannot draw them", stacklevel=3)
-    if scene.layers:
-        if not renderer.camera_set:  # as the first picture of a plotter sees it
-            renderer.camera_position = renderer.get_default_cam_pos()
-            renderer.ResetCamera()
-            renderer.camera_set = False
+    if renderer.camera_set:
         scene.camera = camera_place(renderer.GetActiveCamera())
     scene.plain()
     return scene, names
@@ -221,15 +217,15 @@ def _names(categories: Mapping[int, str], colouring: Colouring) -> list[dict[str
 def _controls(scene: PageScene, fiblets: Any, actor: Any, colouring: Colouring) -> list[dict[str, Any]]:
     """Return numbers of streamlines that a page can filter by: the colouring ones, and lengths if they are cheap."""
     found: dict[str, Any] = {}
-    if colouring.kind.numbers == "lines" and colouring.kind.table:
-        scalars = getattr(actor, "active_scalars", None)
+    scalars = getattr(actor, "active_scalars", None)
+    if colouring.kind.numbers == "lines" and colouring.kind.table and not (scalars and scalars.categories):
         found[scalars.title if scalars is not None else "value"] = np.asarray(colouring.values, float)
     if fiblets.n_points <= _SOON and "length [mm]" not in found:
         found["length [mm]"] = fiblets.lengths()
     controls = []
     for name, values in found.items():
         finite = values[np.isfinite(values)]
-        if finite.size and finite.min() < finite.max():
+        if finite.size and finite.min() < finite.max() and not np.isin(finite, (0.0, 1.0)).all():  # no flags
             span = float(np.float32(finite.min())), float(np.float32(finite.max()))
             controls.append({"name": name, "data": scene.add_blob(values.astype(np.float32)), "range": span})
     return controls

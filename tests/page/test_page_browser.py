@@ -12,6 +12,7 @@ from PIL import Image
 import pvfiblets
 from pvfiblets.page.scene import CameraPlace, PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
+from pvfiblets.plotting.viewpoints import point_camera
 from pvfiblets.synthetic import brain_streamlines
 from tests.page.pages import differing, until
 
@@ -97,6 +98,83 @@ def test_damaged_data_are_one_sentence_on_the_page(damage, figure, visit, tmp_pa
     page = visit(broken)
     assert re.fullmatch(r"[A-Z][^.]*(\.json)?(\.fiblets)?[^.]*\.( [A-Z][^.]*\.)?", page.message)
     assert "again" in page.message
+
+
+@pytest.fixture(scope="module")
+def unset(tmp_path_factory):
+    """Return a page of a plotter whose camera nobody has set, and that plotter."""
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 160))
+    plotter.set_background("black")
+    plotter.add_fiblets(brain_streamlines(200, seed=3), show_scalar_bar=False)
+    path = plotter.fiblets.export_page(tmp_path_factory.mktemp("unset") / "unset.html")[0]
+    yield path, plotter
+    plotter.close()
+
+
+def test_the_first_view_is_the_served_pages_in_each_window_until_the_camera_is_moved(unset, visit):
+    """That of `point_camera`, by VTK's camera."""
+    path, plotter = unset
+    page = visit(path, size=(320, 200))
+
+    def camera():
+        page.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        return page.settled().page.evaluate("pvfiblets.camera.state")
+
+    def expected(view="oblique"):
+        point_camera(plotter, view)
+        return plotter.camera
+
+    def same(found, wanted):
+        np.testing.assert_allclose(found["position"], wanted.position, rtol=1e-3, atol=0.3)
+        np.testing.assert_allclose(found["focal_point"], wanted.focal_point, atol=0.3)
+        np.testing.assert_allclose(found["up"], wanted.up, atol=1e-6)
+        assert found["view_angle"] == pytest.approx(wanted.view_angle, rel=5e-3)
+
+    for size in ((320, 200), (200, 320), (640, 360)):
+        page.page.set_viewport_size({"width": size[0], "height": size[1]})
+        plotter.window_size = size
+        same(camera(), expected())
+        lit = (page.picture() > 40).any(axis=2)
+        assert not np.concatenate([lit[0], lit[-1], lit[:, 0], lit[:, -1]]).any()  # nothing is cut off
+        reach = [np.ptp(np.flatnonzero(lit.any(axis=axis))) / lit.shape[1 - axis] for axis in (0, 1)]
+        assert max(reach) > 0.6
+    page.page.click("#panel summary")
+    page.page.get_by_role("button", name="Left", exact=True).click()
+    same(camera(), expected("sagittal"))
+    page.page.get_by_role("button", name="Reset").click()
+    same(camera(), expected())
+    page.page.focus("#view")
+    page.page.keyboard.press("ArrowLeft")
+    before = camera()
+    page.page.set_viewport_size({"width": 320, "height": 320})
+    assert camera() == before
+
+
+def test_letters_of_orientation_can_be_read_on_each_background(unset, visit):
+    """By the contrast of WCAG 2.2, of the letters and what lies behind them at once, wherever they are."""
+
+    def luminance(colour):
+        red, green, blue = (float(part) / 255.0 for part in re.findall(r"[0-9.]+", colour)[:3])
+        linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in (red, green, blue)]
+        return float(np.dot(linear, (0.2126, 0.7152, 0.0722)))
+
+    page = visit(unset[0], size=(320, 260))
+    letters = page.page.locator(".axis").evaluate_all(
+        "all => all.map((one) => { const {color, backgroundColor, opacity} = getComputedStyle(one);"
+        " return [one.textContent, color, backgroundColor, opacity]; })"
+    )
+    assert {letter for letter, *_ in letters} == set("LRPAIS")
+    shown = np.asarray(Image.open(io.BytesIO(page.page.screenshot())).convert("RGB")).astype(int)
+    for one, (letter, colour, *_) in zip(page.page.locator(".axis").all(), letters, strict=True):
+        box = one.bounding_box()
+        around = shown[int(box["y"]) : int(box["y"] + 20), int(box["x"]) : int(box["x"] + 20)]
+        own = np.array([int(part) for part in re.findall(r"\d+", colour)])
+        assert (np.abs(around - own).max(axis=2) < 60).any(), letter
+    for letter, colour, behind, opacity in letters:
+        assert not behind.startswith("rgba"), letter  # not to be seen through
+        assert opacity == "1"
+        low, high = sorted((luminance(colour), luminance(behind)))
+        assert (high + 0.05) / (low + 0.05) >= 4.5, letter
 
 
 def test_page_fills_small_and_large_windows(figure, visit):
@@ -304,6 +382,20 @@ def test_fingers_turn_and_zoom(figure, visit):
     page.settled()
     state = page.page.evaluate("pvfiblets.camera.state")
     assert np.linalg.norm(np.subtract(state["position"], state["focal_point"])) == pytest.approx(100.0, rel=0.05)
+
+
+def test_controls_are_as_high_as_fingers_are_wide_on_touch_screens(rich, visit):
+    page = visit(rich, size=(390, 844), has_touch=True, is_mobile=True).page
+    page.tap("#panel summary")
+    page.get_by_role("button", name="Add a ball").tap()
+    parts = page.locator("#panel").locator("button, select, label, summary").all()
+    assert len(parts) > 20
+    for part in parts:
+        assert part.bounding_box()["height"] >= 44.0, part.inner_text()
+    last = page.get_by_role("button", name="Remove ball 1")
+    last.scroll_into_view_if_needed()
+    last.tap()  # the scales of colours do not lie over it
+    assert not last.count()
 
 
 def test_keys_reach_every_control_and_all_are_named(rich, visit):

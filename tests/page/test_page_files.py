@@ -137,16 +137,34 @@ def test_cuts_go_along_but_for_closed_surfaces_which_are_named(fiblets, tmp_path
     plotter.close()
 
 
-def test_a_plotter_that_was_never_shown_is_seen_as_its_first_picture_is(fiblets):
+def test_a_camera_that_was_set_goes_along_and_else_the_page_chooses_the_first_view(fiblets):
     plotter = pv.Plotter(off_screen=True, window_size=(60, 40))
     plotter.add_fiblets(fiblets)
-    seen = page_of(plotter).camera
+    assert page_of(plotter).camera is None
     assert not plotter.camera_set  # what is added later is still brought into view
-    plotter.screenshot(return_img=True)
-    shown = plotter.camera
+    plotter.view_yz()
+    seen, shown = page_of(plotter).camera, plotter.camera
     assert np.allclose(seen.position, shown.position)
     assert np.allclose(seen.focal_point, shown.focal_point)
     assert np.allclose(seen.up, shown.up)
+    plotter.close()
+
+
+def test_ranges_are_of_numbers_and_not_of_groups_or_flags(fiblets):
+    plotter = pv.Plotter(off_screen=True, window_size=(60, 40))
+
+    def ranges(scalars):
+        plotter.add_fiblets(fiblets, scalars=scalars, name="lines", show_scalar_bar=False)
+        (layer,) = page_of(plotter).layers
+        return [control["name"] for control in layer["controls"]]
+
+    n = fiblets.n_streamlines
+    usual = ranges(None)
+    assert usual in ([], ["length [mm]"])
+    assert ranges(np.arange(n) % 2) == usual
+    assert ranges(np.arange(n) % 2 == 0) == usual
+    assert ranges(np.array(["left", "right"])[np.arange(n) % 2]) == usual
+    assert len(ranges(np.arange(n) / 7.0)) == 1 + len(usual)
     plotter.close()
 
 

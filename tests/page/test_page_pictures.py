@@ -287,6 +287,6 @@ def test_lines_that_others_hide_are_left_out_and_no_pixel_with_them(width, visit
         found, hidden = page.picture(), page.page.evaluate(hides)
         page.page.evaluate(f"pvfiblets.few = 1e9, {drawn}")
         wrong, covered = differing(found, page.picture())
-        assert covered > 0.1
+        assert covered > 0.05
         assert wrong < 1e-3  # of two lines at the same depth either may be drawn
         assert 0.0 < hidden < 0.98

@@ -169,7 +169,7 @@ class Visit:
         self.page.goto(self.served.url)
         return self.ready()
 
-    def ready(self):
+    def ready(self, *, tools=True):
         picture = self.page.locator("#pv-view img[src^=blob]")
 
         def comes():
@@ -178,6 +178,13 @@ class Visit:
 
         self.wait(comes, "the first picture")
         self.wait(lambda: self.layers() and self.picture().std() > 1.0, "a picture with something in it")
+        return self.unfold() if tools else self
+
+    def unfold(self):
+        """Open the tools where there is room: small screens begin with their icons."""
+        if self.page.viewport_size["width"] >= 1100 and not self.state("shared"):
+            self.page.evaluate("window.trame.state.set('right_open', true)")
+            self.stands()
         return self
 
     def wait(self, until, what):

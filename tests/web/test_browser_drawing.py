@@ -29,7 +29,7 @@ class There(Visit):
     def ready(self):
         self.page.wait_for_selector("#pv-there", state="attached")
         self.wait(self.draws, "a picture that the browser draws")
-        return self
+        return self.unfold()
 
     def draws(self):
         return self.page.evaluate(
@@ -242,6 +242,24 @@ def test_slices_in_the_view_are_drawn_and_moved_without_the_lines(here):
     here.wait(lambda: here.state("slicing")["position"] != place, "the place that was clicked on")
     here.drag()
     assert agrees(here)
+
+
+def test_a_scene_that_is_slow_to_come_is_announced_until_it_is_drawn(here):
+    """Of data that come late and are fetched by the page alone."""
+    note = here.page.locator("#pv-there-progress")
+    assert not note.is_visible()
+    held = []
+    here.page.route("**/there/*", lambda route: held.append(route))
+    here.page.click("[data-layer] >> nth=0")
+    here.choose("scalars", "fa")
+    note.wait_for()
+    assert note.inner_text() == "Drawing the scene…"
+    here.wait(lambda: held, "what is fetched")
+    for route in held:
+        route.continue_()
+    here.page.unroute("**/there/*")
+    note.wait_for(state="hidden")
+    assert here.page.evaluate(TAKEN)
 
 
 def test_panes_are_the_servers_beside_the_browsers_view(here):

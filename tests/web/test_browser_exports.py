@@ -2,6 +2,7 @@
 
 import csv
 import io
+import itertools
 import re
 from pathlib import Path
 
@@ -169,6 +170,20 @@ def test_a_matrix_is_made_pointed_at_and_clicked(revisit, tmp_path):
     here.wait(lambda: here.picture().shape[1] == width() < 500, "the brain to make room")
     picture = here.picture()
     cells = here.page.locator("#pv-cells").bounding_box()
+    for k, name in enumerate(("3", "5")):
+        label = "#pv-{} span:text-is('{}')".format
+        row, column = (here.page.locator(label(side, name)).bounding_box() for side in ("rows", "columns"))
+        assert row["y"] + row["height"] / 2 == pytest.approx(cells["y"] + (k + 0.5) / 2 * cells["height"], abs=1.5)
+        assert row["x"] + row["width"] <= cells["x"]
+        assert column["x"] + column["width"] / 2 == pytest.approx(cells["x"] + (k + 0.5) / 2 * cells["width"], abs=1.5)
+        assert column["y"] + column["height"] <= cells["y"]
+    here.page.evaluate(  # of many parcels there are as many names as there is room for
+        "trame.state.set('matrix', {...trame.state.get('matrix'), names: [...Array(200).keys()].map(String)})"
+    )
+    here.page.wait_for_selector("#pv-rows span >> nth=5")
+    boxes = [label.bounding_box() for label in here.page.locator("#pv-rows span").all()]
+    assert 10 < len(boxes) < 60
+    assert all(b["y"] - a["y"] >= 11.5 for a, b in itertools.pairwise(boxes))
     at = (cells["x"] + 0.75 * cells["width"], cells["y"] + 0.25 * cells["height"])
     here.page.mouse.move(*at)
     # Lines begin in 3, and of those that end in 5 the lengths are 15 to 30 mm.

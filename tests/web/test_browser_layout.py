@@ -154,6 +154,34 @@ def test_what_lies_over_the_picture_is_apart(pages, size):
                 assert across <= 1 or down <= 1, (one, other)
 
 
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=lambda size: f"{size[0]}x{size[1]}")
+def test_readouts_lie_in_one_view_beside_its_letters(visit, size):
+    here = visit("lines.fiblets", width=size[0], height=size[1])
+    here.page.evaluate("window.trame.state.update({left_open: false, right_open: false})")
+    here.page.evaluate("window.trame.trigger('browse', ['', 'slices'])")
+    here.page.click("[data-entry='head.nii.gz']")
+    here.wait(lambda: here.state("slicing")["shown"], "slices")
+    for layout in ("grid", "beside", "axial"):
+        here.page.evaluate("(layout) => trame.trigger('set_layout', [layout])", layout)
+        here.wait(lambda layout=layout: here.state("slicing")["layout"] == layout, layout)
+        here.rests()
+        here.stands()
+        whole = here.page.locator("#pv-view").bounding_box()
+        views = here.state("slicing")["boxes"]
+        (view,) = [one for one in views if one["name"] == "3d" or len(views) == 1]
+        left, top = whole["x"] + view["x"] * whole["width"], whole["y"] + view["y"] * whole["height"]
+        right, bottom = left + view["w"] * whole["width"], top + view["h"] * whole["height"]
+        middle = (left + right) / 2
+        told, status = (here.page.locator(name).bounding_box() for name in ("#pv-told", ".pv-status"))
+        for box in (told, status):
+            assert box["x"] >= left
+            assert box["x"] + box["width"] <= right
+            assert box["y"] >= top
+            assert box["y"] + box["height"] <= bottom
+        assert told["x"] + told["width"] < middle - 10  # where the letter of the lower edge is
+        assert status["x"] > middle + 10
+
+
 def test_bars_that_find_no_room_are_named(pages):
     here = pages
     resize(here, (320, 200), left=False, right=False)
@@ -195,6 +223,82 @@ def test_all_of_the_bar_is_within_reach_of_a_thumb(visit):
     here.page.wait_for_selector("#dialog-picture")
     here.stands()
     assert "\n".join(faults(here, "#dialog-picture")) == ""
+
+
+def test_a_small_screen_begins_with_tools_as_icons_which_open_their_tabs(visit):
+    for width, least in ((1920, 1200), (1280, 900)):
+        here = visit("lines.fiblets", width=width, height=800, opened=False)
+        here.page.goto(here.served.url)
+        here.ready(tools=False).stands()
+        assert here.page.locator("#pv-view").bounding_box()["width"] > least
+    icons = here.page.locator("#right-rail [data-tab]")
+    assert [icon.get_attribute("aria-label") for icon in icons.all()] == [
+        "Clip", "Filter", "Selection", "Bundles", "Slices", "Info",
+    ]  # fmt: skip
+    here.page.click("#right-rail [data-tab=filter]")
+    here.page.wait_for_selector("#tab-filter")
+    here.stands()
+    assert not icons.count()
+    here.press("[")
+    here.stands()
+    layers = here.page.locator("#left-rail .v-btn")
+    assert [layer.get_attribute("aria-label") for layer in layers.all()] == ["lines.fiblets"]
+    layers.click()
+    here.page.click("#properties [data-property=scalars] .v-field")
+    here.press("Escape")
+    here.press("]")
+    here.stands()
+    assert icons.count() == 6
+
+
+SMALL = """() => [...document.querySelectorAll(
+    ':is(#left, #right, .pv-matrix, .v-overlay--active, header, .pv-tools, #paint-tools) :is(.v-btn, .pv-colour)')]
+    .filter((part) => part.checkVisibility({visibilityProperty: true}))
+    .map((part) => [part, part.getBoundingClientRect()])
+    .filter(([, box]) => box.width && Math.min(box.width, box.height) < 43.9)
+    .map(([part, box]) => `${part.ariaLabel || part.innerText || part.outerHTML}: ${box.width} x ${box.height}`)"""
+"""What is smaller than fingers need, 44 pixels."""
+
+
+@pytest.mark.parametrize("size", [(390, 844), (1180, 820)], ids=lambda size: f"{size[0]}x{size[1]}")
+def test_buttons_of_panels_are_as_wide_as_fingers(visit, size):
+    here = visit("lines.fiblets", "--volume", "head.nii.gz", width=size[0], height=size[1], has_touch=True,
+                 is_mobile=True)  # fmt: skip
+    here.wait(lambda: here.layers() == 2, "both layers")
+
+    def panel(name, *, left):
+        opened = {"left_open": left, "right_open": not left, "tab": name}
+        here.page.evaluate("(opened) => window.trame.state.update(opened)", opened)
+        if not left:
+            here.page.wait_for_selector(f"#tab-{name}")
+        here.stands()
+        return [f"{name}: {one}" for one in here.page.evaluate(SMALL)] + faults(here, "#left" if left else "#right")
+
+    panel("clip", left=True)
+    here.page.tap("[data-layer]:has-text('lines.fiblets')")
+    here.wait(lambda: here.state("chosen_name") == "lines.fiblets", "the lines")
+    wrong = panel("clip", left=True)
+    for tab, button in (
+        ("clip", "[data-cut=plane]"),
+        ("filter", "[data-region=sphere]"),
+        ("slices", "[data-action=slices-of-volume]"),
+        ("slices", "[data-action=add-painted]"),
+    ):
+        panel(tab, left=False)
+        here.page.tap(button)
+        here.stands()
+    for tab in ("clip", "filter", "selection", "bundles", "slices", "info"):
+        wrong += panel(tab, left=False)
+    here.page.evaluate("window.trame.state.update({left_open: false, right_open: false})")
+    here.page.evaluate("document.querySelector('[data-action=matrix]').click()")
+    here.page.wait_for_selector("#pv-matrix")
+    here.stands()
+    wrong += here.page.evaluate(SMALL) + faults(here, "#pv-matrix", "#paint-tools")
+    strip, matrix = (here.page.locator(one).bounding_box() for one in ("#paint-tools", "#pv-matrix"))
+    across = min(strip["x"] + strip["width"], matrix["x"] + matrix["width"]) - max(strip["x"], matrix["x"])
+    down = min(strip["y"] + strip["height"], matrix["y"] + matrix["height"]) - max(strip["y"], matrix["y"])
+    assert across <= 1 or down <= 1  # they are apart
+    assert "\n".join(wrong) == ""
 
 
 def test_a_phone_shows_all_of_the_first_picture_and_buttons_as_wide_as_fingers(visit):

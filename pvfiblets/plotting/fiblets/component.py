@@ -565,7 +565,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
 
         Streamlines stay compressed in it, 1.9 bytes a point, and the reader's graphics card decodes them: the picture
         can be turned, zoomed, cut and picked in. Surfaces of ``add_mesh``, slices of images, colour bars and lights go
-        along.
+        along. Unless the plotter's camera was set, the first view is oblique and fits the reader's window.
 
         Parameters
         ----------

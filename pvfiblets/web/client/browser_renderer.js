@@ -6,6 +6,7 @@
   const PACE = 100; // ms between two words on a camera that moves
   const REST = 150; // ms without a move after which it rests
   const LOSSES = 3; // of graphics, after which this page leaves drawing to the server
+  const PATIENT = 250; // ms that a change of the scene may take without a word
 
   const call = (name, ...args) => window.trame?.trigger(name, args);
   const get = (name) => window.trame?.state?.get(name);
@@ -14,6 +15,7 @@
   let renderer = null, canvas = null, script = null, wanted = null, busy = false, broken = "", losses = 0;
   let data = new Map();
   let told = "", last = "", saidAt = 0, timer = 0, resting = true;
+  let taken = true, patience = 0; // whether the scene that was told last has been drawn; a timer
   let turn = 0; // of the last camera from elsewhere: the server leaves out moves that were made before it
 
   // What there is to draw with --------------------------------------------------------------------
@@ -28,6 +30,14 @@
     const card = String(gl.getParameter(more ? more.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
     gl.getExtension("WEBGL_lose_context")?.loseContext();
     call("there_ready", true, card);
+  };
+
+  // While a scene comes and is drawn for the first time, the page says so.
+  const progress = (begins) => {
+    clearTimeout(patience);
+    const note = document.querySelector("#pv-there-progress");
+    if (begins) patience = setTimeout(() => { if (note) note.hidden = false; }, PATIENT);
+    else if (note) note.hidden = true;
   };
 
   const fail = (error) => {
@@ -72,6 +82,7 @@
     renderer.failed = renderer.lacking = fail;
     renderer.presented = () => {
       show();
+      if (taken) progress(false);
       window.pvfibletsDistances(renderer);
       follow();
     };
@@ -95,6 +106,8 @@
   };
 
   const apply = async ({ scene }) => {
+    taken = false;
+    progress(true);
     const files = scene.data.map((one) => one.file);
     for (const file of files) if (!data.has(file)) data.set(file, fetched(file));
     await loaded();
@@ -106,6 +119,7 @@
     else renderer.update(scene, all, opened(scene, all));
     const over = document.querySelector("#pv-there-bars");
     over.replaceChildren(...scene.bars.map(bar));
+    taken = true;
   };
 
   const change = async (there) => {
@@ -131,6 +145,7 @@
 
   // What was drawn here stays until the server's picture is there.
   const hide = () => {
+    progress(false);
     const view = document.querySelector("#pv-view"), old = canvas;
     if (!old || old.style.visibility === "hidden") return;
     const gone = () => {

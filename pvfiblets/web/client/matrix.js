@@ -37,6 +37,36 @@
     busy = false;
   };
 
+  // Names of rows and columns, as many as there is room for.
+  const LINE = 12; // pixels, of a name
+  const watched = new WeakSet();
+  const label = () => {
+    const cells = document.querySelector("#pv-cells"), names = window.trame.state.get("matrix")?.names ?? [];
+    if (!cells) return;
+    if (!watched.has(cells)) {
+      watched.add(cells);
+      new ResizeObserver(label).observe(cells);
+    }
+    const step = Math.max(1, Math.ceil((LINE * names.length) / cells.clientWidth));
+    for (const [side, edge] of [["rows", "top"], ["columns", "left"]])
+      cells.querySelector(`#pv-${side}`).replaceChildren(...names.flatMap((name, i) => {
+        if (i % step) return [];
+        const made = document.createElement("span");
+        made.textContent = name;
+        made.style[edge] = `${(100 * (i + 0.5)) / names.length}%`;
+        return [made];
+      }));
+  };
+  const attach = () => {
+    const state = window.trame?.state;
+    if (state?.get("matrix") === undefined) return setTimeout(attach, 50);
+    if (watched.has(state)) return;
+    watched.add(state);
+    state.watch(["matrix"], () => requestAnimationFrame(label));
+  };
+  attach();
+  window.trame?.addConnectListener?.(() => setTimeout(attach, 0));
+
   let last = "";
   document.addEventListener("pointermove", (event) => {
     const element = cells(event);

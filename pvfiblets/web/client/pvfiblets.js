@@ -11,11 +11,12 @@
   };
   const get = (name) => state()?.get(name);
 
-  // On a narrow screen the panels lie over the picture, and begin closed. The widths are those of layout.py.
+  // On a narrow screen the panels lie over the picture, and begin closed (the widths are those of layout.py). On a wider
+  // one the tools begin as icons, until the picture has half of the width beside them.
   const begin = () => {
     if (!state()) return setTimeout(begin, 50);
     if (window.innerWidth < 900) set("left_open", false);
-    if (window.innerWidth < 1100) set("right_open", false);
+    if (window.innerWidth < 1400) set("right_open", false);
     // A sentence that was read is not said again after a reload.
     try {
       if (sessionStorage.getItem("pvfiblets-said") === String(get("toast_number"))) set("toast_open", false);
@@ -33,6 +34,18 @@
     new MutationObserver(name).observe(area, { childList: true, subtree: true });
     name();
   };
+
+  // Vuetify names inputs and lists by labels that are not there: their own text names them.
+  const rename = () => {
+    for (const one of document.querySelectorAll("input[aria-labelledby], .v-list[aria-labelledby]")) {
+      const label = one.getAttribute("aria-labelledby");
+      if (document.getElementById(label)) continue;
+      one.removeAttribute("aria-labelledby");
+      const field = document.getElementById(label.replace(/-label$/, ""));
+      if (field?.ariaLabel && !one.ariaLabel) one.ariaLabel = field.ariaLabel;
+    }
+  };
+  new MutationObserver(rename).observe(document, { childList: true, subtree: true });
 
   // Light or dark is kept by the browser; a view that others see, too, is left as it is.
   const KEY = "pvfiblets-dark";

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from trame.ui.vuetify3 import VAppLayout
@@ -42,12 +43,24 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 }
 .pv-matrix.pv-alone { left: var(--v-layout-left); top: var(--v-layout-top); width: auto; height: auto }
 .pv-alone .pv-cells { max-width: min(100%, 100dvh - 230px) } /* its text stays in view */
-.pv-cells { position: relative; aspect-ratio: 1; max-width: 460px; cursor: crosshair; touch-action: pan-y }
+.pv-cells { position: relative; aspect-ratio: 1; max-width: 460px; cursor: crosshair; touch-action: pan-y;
+  margin: var(--names) 0 0 var(--names) }
+.pv-matrix { --names: 76px } .pv-matrix.pv-alone { --names: 140px }
+.pv-rows, .pv-columns { position: absolute; pointer-events: none; font-size: 10px; line-height: 12px; opacity: .8 }
+.pv-rows { right: 100%; top: 0; bottom: 0; width: var(--names) }
+.pv-columns { bottom: 100%; left: 0; right: 0; height: var(--names) }
+.pv-rows span, .pv-columns span { position: absolute; overflow: hidden; white-space: nowrap; text-overflow: ellipsis }
+.pv-rows span { right: 4px; max-width: calc(100% - 4px); transform: translateY(-50%) }
+.pv-columns span { bottom: 4px; max-height: calc(100% - 4px); writing-mode: vertical-rl;
+  transform: translateX(-50%) rotate(180deg) }
 .pv-cells img { width: 100%; height: 100%; display: block; image-rendering: pixelated; user-select: none }
 @media (max-width: 759.9px) { .pv-cells { max-width: min(460px, 33vh) } } /* its text stays in view */
 @media (pointer: coarse) {
-  :is(.pv-bundles, .pv-matrix) .v-btn--size-x-small:not(.v-btn--icon) { height: 36px; padding-inline: 12px }
-  :is(.pv-bundles, .pv-matrix) .v-btn--size-x-small.v-btn--icon { width: 36px; height: 36px }
+  :is(#left, #right, .pv-matrix, .v-overlay) :is(.v-btn, .v-list-item, .pv-colour, .pv-num) {
+    min-height: 44px !important }
+  :is(#left, #right, .pv-matrix, .v-overlay) :is(.v-btn, .pv-colour) { min-width: 44px !important }
+  .v-btn-group { height: auto !important }
+  #right .v-tabs { --v-tabs-height: 44px }
   .pv-grip { display: none } /* fingers scroll: there are buttons */
 }
 .pv-cross, .pv-chosen-cell { position: absolute; pointer-events: none; box-shadow: 0 0 0 1.5px #fff, 0 0 0 3px #000 }
@@ -61,6 +74,8 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
   align-items: flex-end;
   pointer-events: none; color: #fff; font: 12px/1.3 Roboto, sans-serif; font-variant-numeric: tabular-nums }
 .pv-view[data-ground=light] .pv-there-bars { color: #000 }
+#pv-there-progress { position: absolute; left: 50%; top: 50%; transform: translate(-50%, -50%); padding: 8px 12px;
+  border-radius: 6px; background: #000c; color: #fff; font: 13px Roboto, sans-serif }
 .pv-there-distances, .pv-there-distances svg { position: absolute; inset: 0; width: 100%; height: 100%;
   overflow: hidden; pointer-events: none; stroke: #fc0; stroke-width: 2 }
 .pv-there-distances text { font: 14px Roboto, sans-serif; fill: #fc0; stroke: none; text-shadow: 1px 1px 1px #000 }
@@ -77,16 +92,18 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
   box-shadow: 0 0 0 1px #0008, inset 0 0 0 1px #0008 }
 .pv-seams { position: absolute; inset: 0; z-index: 1; pointer-events: none }
 .pv-seams div { position: absolute; box-shadow: 0 0 0 .5px #8888; }
-.pv-told { position: absolute; left: 8px; bottom: 6px; z-index: 2; max-width: 45%; font: 12px Roboto, sans-serif;
-  color: #ffd040; text-shadow: 0 0 3px #000, 0 0 2px #000; pointer-events: none; font-variant-numeric: tabular-nums }
+.pv-told, .pv-status { position: absolute; bottom: 6px; max-width: calc(50% - 24px); font: 12px Roboto, sans-serif;
+  text-shadow: 0 0 3px #000, 0 0 2px #000; font-variant-numeric: tabular-nums } /* beside the letter below */
+.pv-told { left: 8px; color: #ffd040 }
 .pv-tools { position: absolute; left: 8px; top: 8px; z-index: 3; display: flex; flex-direction: column; gap: 4px }
 .pv-paint-tools { position: absolute; left: 60px; top: 8px; z-index: 4; display: flex; flex-wrap: wrap; gap: 2px;
   max-width: calc(100% - 68px); padding: 2px; border-radius: 8px; background: #000b }
 .pv-paint-tools .pv-dot { align-self: center; width: 14px; height: 14px; margin: 0 4px }
 @media (pointer: coarse) {
   .pv-tools .v-btn, [data-paint-tool], .pv-paint-tools .v-btn { width: 44px !important; height: 44px !important }
-  header .v-btn--icon { width: min(44px, 12vw) !important; height: 44px !important } /* eight of them */
-  .pv-label-row .v-btn { min-height: 40px } .pv-num { font-size: 16px; padding: 6px }
+  header .v-btn--icon { width: min(44px, 12vw) !important } /* eight of them */
+  header :is(.v-btn, .pv-colour) { min-height: 44px } header .pv-colour { min-width: 44px }
+  .pv-num { font-size: 16px; padding: 6px }
 }
 .pv-over { position: absolute; inset: 0; z-index: 2; cursor: crosshair; touch-action: none }
 .pv-over svg { width: 100%; height: 100% }
@@ -105,8 +122,7 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
   text-shadow: 0 0 3px #000, 0 0 3px #000; white-space: nowrap }
 .pv-label-row .v-btn__content { min-width: 0; overflow: hidden }
 .pv-dot { width: 10px; height: 10px; border-radius: 50%; flex: none }
-.pv-status { position: absolute; right: 8px; bottom: 6px; z-index: 2; font: 12px Roboto, sans-serif; color: #fff;
-  opacity: .85; text-shadow: 0 0 3px #000, 0 0 2px #000; pointer-events: none }
+.pv-status { right: 8px; text-align: right; color: #fff; opacity: .85 }
 .pv-notes { position: absolute; right: 8px; top: 8px; z-index: 3; max-width: calc(50% - 40px); display: flex;
   flex-direction: column; align-items: end; gap: 4px; text-align: right; font: 12px Roboto, sans-serif; color: #fff;
   text-shadow: 0 0 3px #000, 0 0 2px #000; pointer-events: none }
@@ -117,14 +133,15 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-bar { flex: 1 1 auto; min-width: 0; display: flex; align-items: center }
 .pv-bar > *, .pv-wide > * { flex: none } .pv-bar > .v-spacer, .pv-wide > .v-spacer { flex: 1 0 0 }
 .pv-wide { flex: 1 1 auto !important; display: flex; align-items: center; min-width: 0 }
-@media (max-width: 759.9px) { .pv-wide { display: none } }
-@media (min-width: 760px) { .pv-narrow { display: none !important } }
+@media (max-width: 759.9px), (max-width: 1059.9px) and (pointer: coarse) { .pv-wide { display: none } }
+@media (min-width: 1060px), (min-width: 760px) and (not (pointer: coarse)) { .pv-narrow { display: none !important } }
 .pv-progress { position: fixed !important; left: 50%; bottom: 24px; transform: translateX(-50%); z-index: 2400;
   max-width: calc(100vw - 16px) }
 .pv-bar .v-btn { margin-inline: 0 !important }
 .v-layout { overflow: clip !important } /* not even the focus moves it */
 .v-snackbar__wrapper { min-width: 0 !important; max-width: min(672px, calc(100vw - 16px)) !important }
 .v-snackbar__content { overflow-wrap: anywhere }
+.pv-rail { display: flex; flex-direction: column; align-items: center; gap: 4px; padding: 6px 0 }
 .pv-scroll { overflow: hidden auto; min-height: 0 }
 .pv-row { display: grid; grid-template-columns: 104px 1fr; align-items: center; gap: 8px; padding: 3px 12px }
 .pv-row > label, .pv-row > .pv-label { font-size: 13px; line-height: 1.2; opacity: .85 }
@@ -207,11 +224,42 @@ def build(app: Any) -> Any:
                 aria_label="Tools",
             ):
                 tabs.build(app)
+            _rail("left", 900, "Layers", _layer_icons, app)
+            _rail("right", 1100, "Tools", _tab_icons, app)
             with v3.VMain(style="position: relative; height: 100%"):
                 _view(app)
                 matrix_panel.build(app)
             dialogs.build(app)
     return layout
+
+
+def _rail(side: str, least: int, label: str, icons: Callable[[Any], None], app: Any) -> None:
+    """Build the icons that a folded panel leaves behind where a page is not too narrow for them."""
+    with v3.VNavigationDrawer(
+        v_if=f"!{side}_open && $vuetify.display.width >= {least}", permanent=True, width=48, location=side,
+        id=f"{side}-rail", aria_label=f"{label}, folded",
+    ):  # fmt: skip
+        with html.Div(classes="pv-rail", click=f"{side}_open = true"):
+            icons(app)
+
+
+def _layer_icons(app: Any) -> None:
+    with v3.VBtn(
+        v_for="layer in layers", key="layer.id", icon=True, size="small", variant="text", aria_label=("layer.name",),
+        click=(app.choose, "[layer.id]"), color=("layer.id === chosen ? 'primary' : undefined",),
+    ):  # fmt: skip
+        v3.VIcon(icon=(f"({panels.ICONS!r})[layer.kind]",), size=20)
+        ui.tooltip("{{ layer.name }}", "right", label=("layer.name",))
+
+
+def _tab_icons(_: Any) -> None:
+    for name, title, icon in tabs.TABS:
+        with v3.VBtn(
+            icon=True, size="small", variant="text", aria_label=title, data_tab=name,
+            click=f"tab = '{name}'", color=(f"tab === '{name}' ? 'primary' : undefined",),
+        ):  # fmt: skip
+            v3.VIcon(icon, size=20)
+            ui.tooltip(title, "left")
 
 
 SAVE = "utils.download('picture.png', trigger('picture'), 'image/png')"
@@ -332,6 +380,9 @@ def _view(app: Any) -> None:
             )  # fmt: skip
             html.Div(id="pv-there-distances", classes="pv-there-distances")
             html.Div(id="pv-there-bars", classes="pv-there-bars")
+            with html.Div(id="pv-there-progress", role="status", hidden=True):
+                html.Span("Drawing the scene…")
+                v3.VProgressLinear(indeterminate=True, color="primary", aria_label="Drawing the scene")
         with html.Div(  # over the 3-D view, wherever that is
             v_if="show_regions && marks.length && slicing.boxes.every((b) => b.name !== '3d') === !slicing.shown",
             classes="pv-marks", id="pv-marks", style=(f"({OVER_3D})",),
@@ -371,7 +422,9 @@ def _view(app: Any) -> None:
                 ):  # fmt: skip
                     v3.VIcon(icon, size=20)
                     ui.tooltip(hint, "right")
-        html.Div("{{ frame }}", classes="pv-status", title=("drawing",))
+        with html.Div(style=(f"({{ position: 'absolute', zIndex: 2, pointerEvents: 'none', ...{OVER_3D} }})",)):
+            slices_tab.readout()
+            html.Div("{{ frame }}", classes="pv-status", title=("drawing",))
         with html.Div(classes="pv-notes"):
             with html.Div(v_if="measured.length", classes="pv-measured"):
                 v3.VBtn(

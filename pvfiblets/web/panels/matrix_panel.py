@@ -97,7 +97,7 @@ class MatrixActions(LineActions):
     def _told(self, matrix: Matrix | None, found: Connectome | None) -> dict[str, Any]:
         """Return the description of the matrix."""
         if matrix is None or found is None:
-            return {"n": 0, "said": "", "low": "", "high": "", "log": self._logarithmic, "cell": ""}
+            return {"n": 0, "names": [], "said": "", "low": "", "high": "", "log": self._logarithmic, "cell": ""}
         layer = self._app.scene.layer(matrix.layer)
         weighted = f", weighted by {matrix.weights}" if matrix.weights is not None else ""
         low, high = _range(found.matrix, self._logarithmic)
@@ -106,7 +106,8 @@ class MatrixActions(LineActions):
         if connection is not None:
             cell = " – ".join(self._name(found, label) for label in connection["pair"])
         return {
-            "n": len(found.labels), "log": self._logarithmic, "low": short(low), "high": short(high),
+            "n": len(found.labels), "names": found.names,
+            "log": self._logarithmic, "low": short(low), "high": short(high),
             "said": f"{layer.name}, {Path(matrix.labels).name}: {found.statistic} of {found.contrast}{weighted}, "
             f"within {found.radius:g} mm; {found.n_connecting:,} of {len(found.ends):,} streamlines connect two",
             "cell": cell, "pair": [] if connection is None else self._places(found, connection["pair"]),
@@ -321,6 +322,8 @@ def build(app: Any) -> None:
         with html.Div(v_if="matrix.n", classes="px-3"):
             html.Div("{{ matrix.said }}", classes="pv-small pb-1", data_value="matrix-said")
             with html.Div(classes="pv-cells", id="pv-cells", data_n=("matrix.n",)):
+                html.Div(classes="pv-rows", id="pv-rows", v_pre=True)
+                html.Div(classes="pv-columns", id="pv-columns", v_pre=True)
                 html.Img(src=("matrix_image",), alt="The matrix", draggable="false")
                 html.Div(classes="pv-cross", id="pv-cross", hidden=True)
                 html.Div(

@@ -250,12 +250,16 @@ def layout_menu(app: Any) -> None:
                 )  # fmt: skip
 
 
-def over() -> None:
-    """Build the overlays: lines between views, and the values under the cross-hair."""
+def readout() -> None:
+    """Build the values under the cross-hair."""
     with html.Div(v_if="slicing.shown && slicing.layout !== '3d'", classes="pv-told", id="pv-told"):
         html.Div("{{ slicing.position.join('  ') }} mm")
         html.Div("{{ row[0] }}: {{ row[1] }}", v_for="(row, i) in slicing.values.slice(0, 6)", key="i",
                  classes="text-truncate")  # fmt: skip
+
+
+def over() -> None:
+    """Build the lines between views."""
     with html.Div(v_if="slicing.boxes.length > 1", classes="pv-seams", id="pv-seams"):
         html.Div(
             v_for="b in slicing.boxes", key="b.name", data_view_box=("b.name",),

@@ -11,8 +11,9 @@ from pvfiblets.web.panels.elements import eye, fold, html, v3
 from pvfiblets.web.panels.writing import EXPORTS
 
 TABS = (
-    ("clip", "Clip"), ("filter", "Filter"), ("selection", "Selection"), ("bundles", "Bundles"), ("slices", "Slices"),
-    ("info", "Info"),
+    ("clip", "Clip", "mdi-content-cut"), ("filter", "Filter", "mdi-filter-outline"),
+    ("selection", "Selection", "mdi-selection-ellipse"), ("bundles", "Bundles", "mdi-group"),
+    ("slices", "Slices", "mdi-layers-outline"), ("info", "Info", "mdi-information-outline"),
 )  # fmt: skip
 TAB = "min-width: 0; font-size: 13px; letter-spacing: 0"
 CUTS = (("plane", "Plane"), ("slab", "Slab"), ("box", "Box"), ("sphere", "Sphere"))
@@ -24,7 +25,7 @@ def build(app: Any) -> None:
     """Build the tabs."""
     with html.Div(style="display: flex; flex-direction: column; height: 100%"):
         with v3.VTabs(v_model=("tab", "clip"), density="compact", grow=True, style="flex: none", show_arrows=False):
-            for name, title in TABS:
+            for name, title, _ in TABS:
                 v3.VTab(title, value=name, classes="text-none px-0", style=TAB, data_tab=name)
         with html.Div(classes="pv-scroll", style="flex: 1 1 auto"):
             with html.Div(v_if="tab === 'clip'", id="tab-clip"):

@@ -74,7 +74,6 @@ class SentScenes:
         kept = {id(blob) for _, blob in page.made.values()}
         self._names = {key: found for key, found in self._names.items() if key in kept}
         content = page.plain()
-        del content["camera"]
         content["bars"] = _bars(scene)
         content["distances"] = [
             {"from": one.begin, "to": one.end, "text": one.text} for one in scene.state.measurements
