@@ -268,6 +268,13 @@ class Visit:
         """Draw a line over the view through places, shares of it."""
         box = self.page.locator("#pv-view").bounding_box()
         at = [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in places]
+        self.page.wait_for_function(  # nothing that fades or slides away lies over what is drawn on
+            """([x, y]) => {
+                const over = document.querySelector('#pv-over');
+                return !over || over.contains(document.elementFromPoint(x, y));
+            }""",
+            arg=list(at[0]),
+        )
         self.page.mouse.move(*at[0])
         self.page.mouse.down()
         for place in at[1:]:

@@ -44,6 +44,7 @@ def test_no_tab_has_a_serious_fault(here):
     here.page.click("text=lines.fiblets")
     here.page.click("[data-action=expert]")
     here.page.click("[data-view=axial]")
+    here.rests()
     here.page.click("[data-tool-button=box]")
     here.page.wait_for_selector("#pv-over[data-tool=box]")
     here.trace([(0.98, 0.98), (0.1, 0.02)])
@@ -81,6 +82,16 @@ def test_no_tab_has_a_serious_fault(here):
         here.press("Escape")
         here.page.wait_for_selector(f"#dialog-{name}", state="hidden")
     assert "\n".join(found) == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "state"), [("busy", {"job": {"text": "compiling", "share": -1.0}}), ("uploading", {"uploading": "a.trk"})]
+)
+def test_progress_has_a_name(here, name, state):
+    here.wait(lambda: not here.state("job").get("text"), "no other work")
+    here.page.evaluate("(state) => window.trame.state.update(state)", state)
+    here.page.wait_for_selector(f"#{name}")
+    assert faults(here, name) == []
 
 
 def test_the_page_may_be_zoomed_and_its_picture_has_a_name(here):

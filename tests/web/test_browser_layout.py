@@ -22,6 +22,7 @@ LONG = "a_tractogram_of_a_study_with_a_very_long_name_that_nobody_wants_to_read.
 
 
 def faults(here, *parts):
+    here.wait(lambda: not here.state("job").get("text"), "the end of what lies over the page, such as compiling")
     return here.page.evaluate(f"({FAULTS})({list(parts)})")
 
 
@@ -56,6 +57,7 @@ def pages(browser, served):
     pick(here, "the lines", "lines.fiblets")
     here.choose("scalars", "fa")
     here.page.click("[data-view=axial]")
+    here.rests()  # lines are selected of the picture that is shown
     here.page.click("[data-tool-button=box]")
     here.page.wait_for_selector("#pv-over[data-tool=box]")
     here.trace([(0.98, 0.98), (0.1, 0.02)])

@@ -245,7 +245,9 @@ def _progress(app: Any) -> None:
                     "{{ job.text }}", style="flex: 1; font-size: 13px", classes="text-truncate", title=("job.text",)
                 )
                 ui.button("Cancel", v_if="job.cancellable", click=app.files.cancel, data_action="cancel")
-            v3.VProgressLinear(model_value=("job.share",), indeterminate=("job.share < 0",), color="primary")
+            v3.VProgressLinear(
+                model_value=("job.share",), indeterminate=("job.share < 0",), color="primary", aria_label=("job.text",),
+            )  # fmt: skip
             html.Div(
                 "{{ job.then }}", v_if="job.then", style="font-size: 12px; opacity: .7", classes="text-truncate mt-2",
                 title=("job.then",), id="waiting",
@@ -262,4 +264,6 @@ def _progress(app: Any) -> None:
                     title=("uploading",),
                 )
                 ui.button("Cancel", data_action="cancel-upload")
-            v3.VProgressLinear(model_value=("uploaded",), indeterminate=("uploaded < 0",), color="primary")
+            v3.VProgressLinear(
+                model_value=("uploaded",), indeterminate=("uploaded < 0",), color="primary", aria_label=("uploading",),
+            )  # fmt: skip
