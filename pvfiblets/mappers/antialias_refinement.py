@@ -50,7 +50,7 @@ class _Frame(Enum):
     PLAIN = auto()
     SAMPLE = auto()
     MEAN = auto()
-    HELD = auto()  # in which samples of others were drawn; shown as the plain one before
+    HELD = auto()  # shows the plain frame before it; samples of others are drawn meanwhile
     ADDED = auto()  # a sample of a tile, or a layer of all samples: not shown
 
 

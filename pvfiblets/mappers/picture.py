@@ -52,13 +52,13 @@ _EVENTS = ("StartEvent", "EndEvent", "ActiveCameraEvent")
 _COVERAGE = "coverage"
 _OTHERS = "samples of others"
 
-SIDE = 4  # squares along a pixel's side, each of which has one of the samples
+SIDE = 4  # a pixel has SIDE x SIDE squares, with one sample each
 
 MOST_BYTES = 2**29
-"""Of samples of others that are kept; where they are more, samples are drawn one after the other."""
+"""Limit of kept samples of others; above it, samples of the whole scene are drawn one after the other."""
 
 PATIENCE = 0.2
-"""Seconds for samples of others in a frame of a window that somebody may use meanwhile."""
+"""Seconds for samples of others in one frame, so that a window answers."""
 
 ANTIALIAS = ("off", _COVERAGE)  # methods of smoothing edges of lines
 
@@ -111,7 +111,7 @@ class Picture:
         # says whether somebody asks for more frames of the picture while it rests
         self.paced: Callable[[], bool] = lambda: False
         self._job: _Job | None = None
-        self.hurries = False  # whether nobody uses the window before the picture is finished
+        self.hurries = False  # whether the picture is finished before the window answers again
         self._lacks_memory = False
         self._fetched_in: Hashable = None  # a state in whose samples parts were fetched after all
         shown_pictures.add(self)
@@ -217,7 +217,7 @@ class Picture:
 
     @property
     def samples_others(self) -> bool:
-        """Whether the next frame is to draw samples of what is not drawn at once."""
+        """Whether the next frame draws samples of others."""
         return self._job is not None and self._job.samples_others
 
     def _drop_job(self) -> None:
@@ -419,7 +419,7 @@ class Picture:
         return found
 
     def _draw_others(self, renderer: Any) -> None:
-        """Draw samples of what is not drawn at once, each in a frame inside of the one that is about to be drawn."""
+        """Draw samples of others, each in a frame within the next one."""
         refinement, job = self._refinement, self._job
         assert refinement is not None
         assert job is not None
@@ -640,7 +640,7 @@ def _refinable(renderer: Any) -> bool:
 
 @contextmanager
 def _only(renderer: Any, props: list[Any]) -> Iterator[None]:
-    """Have a renderer show some of its props only; nobody is told, and no state changes."""
+    """Show only some props of a renderer, without events and without a change of state."""
     shown = renderer.GetViewProps()
     kept = items_of(shown)
     for prop in kept:

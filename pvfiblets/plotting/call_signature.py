@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pyvista as pv
 
 from pvfiblets.plotting.components import register
-from pvfiblets.plotting.settings import arguments
+from pvfiblets.plotting.settings import Given, arguments
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,6 +49,18 @@ def document(component: Any) -> None:
         [first, *kept, *settings, *last], return_annotation=made.return_annotation
     )
     component.add = add
+
+
+def split_arguments(component: Any, given: dict[str, Any]) -> tuple[dict[str, Any], Given, dict[str, Any]]:
+    """Split the arguments of ``add``: what all drawables have in common, settings, and what is about the data."""
+    common = {name: given.pop(name, one.default) for name, one in component.COMMON.DECLARED.items()}
+    declared = component._SETTINGS  # noqa: SLF001 - as every component has it
+    known, settings = arguments(declared), Given(declared, given)
+    own = {name: value for name, value in given.items() if name not in known}
+    unknown = next((name for name in own if name not in component.OWN), None)
+    if unknown is not None:
+        raise TypeError(f"{component.ADD}() got an unexpected keyword argument {unknown!r}")
+    return common, settings, own
 
 
 def plotter_method(component: Any) -> Any:

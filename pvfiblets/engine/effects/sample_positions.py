@@ -55,7 +55,7 @@ def sample_positions(n: int) -> tuple[tuple[float, float], ...]:
 
 
 def sample_squares(side: int) -> tuple[tuple[int, int], ...]:
-    """Return a square of a pixel's side x side, column and row, for each of as many samples: one a square, by rows."""
+    """Return column and row of each of side² samples in a grid of side x side squares, one sample in each square."""
     places = np.array(sample_positions(side * side))
     rows = np.argsort(places[:, 1], kind="stable").reshape(side, side)
     rows = np.take_along_axis(rows, np.argsort(places[rows, 0], axis=1, kind="stable"), axis=1)

@@ -4,8 +4,8 @@ Fiblets are decoded once for all samples of a pixel, which lie side by side in a
 (``FEATURE_SUBSAMPLES``): each has a depth test of its own. The samples of a pixel that show the same fiblet are lit
 once: layer k holds each pixel's line with the k-th most samples, and their share of the pixel. Several sets, and the
 parts of a set that is drawn in parts, are drawn one after the other into the same samples: what earlier ones hide of
-later ones is culled. All else in the scene, such as meshes, is drawn before, sample by sample (`OtherSamples`): lines
-begin with its depths, and what they leave of its colours is added up.
+later ones is culled. All else in the scene, such as meshes, is drawn before, sample by sample (`OtherSamples`):
+it hides lines by its depths, and its colours are added up where no line shows.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from .style import FibletStyle
 if TYPE_CHECKING:
     from .pipelines import ComputePipeline, DrawRequest
 
-__all__ = ["LAYERS", "SAMPLES", "SIDE", "Layer", "OtherSamples", "SampleLayers", "SampledLines", "draw_samples"]
+__all__ = ["LAYERS", "SAMPLES", "Layer", "OtherSamples", "SampleLayers", "SampledLines", "draw_samples"]
 
 SIDE = 4
 SAMPLES = SIDE * SIDE
@@ -49,7 +49,7 @@ MOST_TEXELS = 2**23
 
 MOST_SETS = 2**15 - 1
 
-NO_SET = MOST_SETS
+NO_SET = MOST_SETS  # number of a sample without a line
 
 Rectangle = tuple[int, int, int, int]
 
@@ -142,7 +142,7 @@ class SampleLayers:
         sets : sequence of sequence of SampledLines
             The parts of each set. Of two lines at one depth the one of the later set or part shows.
         others : OtherSamples, optional
-            Of the picture in which the lines lie.
+            Everything else in the same picture.
 
         Raises
         ------
@@ -184,7 +184,7 @@ class SampleLayers:
                 if not last:
                     yield (step + 1) / steps
             with self._gl.framebuffers_kept():
-                self._sort(whole, samples, of_sets, entries, listed, corner, others)
+                self._sort(whole, samples, of_sets, entries, listed, corner)
             if others is not None:
                 self._add_others(others, of_sets, corner, whole)
             yield (part + 1) / len(corners)
@@ -250,7 +250,6 @@ class SampleLayers:
         entries: moderngl.Texture,
         listed: moderngl.Framebuffer,
         corner: tuple[int, int],
-        others: OtherSamples | None,
     ) -> None:
         """Put the samples of one part of the picture into layers."""
         self._ctx.enable_only(moderngl.NOTHING)
@@ -258,16 +257,16 @@ class SampleLayers:
         program, array = self._programs.screen("fiblets/samples/entries.frag", [])
         drawn = {"drawn_depth": samples.depth, "drawn_ids": samples.ids, "drawn_set": sets}
         _use(program, drawn)
-        program["claimed"] = int(self._sets > 1 or others is not None)
+        claimed, others = int(self._sets > 1 or self._rest is not None), int(self._rest is not None)
+        program["claimed"] = claimed
         listed.use()
         array.render(moderngl.TRIANGLES, vertices=3)
         program, array = self._programs.screen("fiblets/samples/layer.frag", [])
         _use(program, {"entries": entries, "drawn_position": samples.position, **drawn})
-        program["corner"], program["claimed"] = corner, int(self._sets > 1 or others is not None)
-        program["others"] = int(others is not None)
+        program["corner"], program["claimed"], program["others"] = corner, claimed, others
         for number in range(LAYERS):
             if number == len(self._targets):
-                self._targets.append(self._made(size, others))
+                self._targets.append(self._made(size))
             program["layer"], program["layers"] = number, LAYERS
             target = self._targets[number].framebuffer
             target.use()
@@ -295,10 +294,10 @@ class SampleLayers:
             array.render(moderngl.TRIANGLES, vertices=3)
         return of_set
 
-    def _made(self, size: tuple[int, int], others: OtherSamples | None) -> PictureTarget:
+    def _made(self, size: tuple[int, int]) -> PictureTarget:
         target = PictureTarget(self._ctx, size, None, edges=False)
-        # Around what is drawn, all samples of a pixel show nothing, or others.
-        for attachment, value in enumerate((EMPTY, WHOLE if not self._targets and others is None else 0)):
+        # Samples around the lines show nothing, or others, which have no share of a layer.
+        for attachment, value in enumerate((EMPTY, 0 if self._targets or self._rest else WHOLE)):
             self._gl.clear_integers(target.framebuffer, (value,), attachment)
         return target
 

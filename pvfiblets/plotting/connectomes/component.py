@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.call_signature import document, plotter_method
+from pvfiblets.plotting.call_signature import document, plotter_method, split_arguments
 from pvfiblets.plotting.components import register
 from pvfiblets.plotting.connectomes.settings import ConnectomeCommon, EdgeSettings
 from pvfiblets.plotting.settings import Given
-from pvfiblets.plotting.settings import arguments as settings_of_call
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -66,13 +65,7 @@ class ConnectomesComponent:
 
     def add(self, /, matrix: Any, labels: Any, **arguments: Any) -> ConnectomeGraph:
         """Make a graph and add it to the plotter."""
-        common = {name: arguments.pop(name, one.default) for name, one in self.COMMON.DECLARED.items()}
-        known = set(settings_of_call(self._SETTINGS))
-        given = Given(self._SETTINGS, arguments)
-        own = {name: value for name, value in arguments.items() if name not in known}
-        unknown = next((name for name in own if name not in self.OWN), None)
-        if unknown is not None:
-            raise TypeError(f"{self.ADD}() got an unexpected keyword argument {unknown!r}")
+        common, given, own = split_arguments(self, arguments)
         reset_camera, render, name = (common.pop(word) for word in ("reset_camera", "render", "name"))
         taken = {graph.name for graph in self}
         if name is None:

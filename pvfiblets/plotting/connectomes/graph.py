@@ -229,7 +229,7 @@ class ConnectomeGraph:
 
     @contextmanager
     def _in_its_view(self) -> Iterator[dict[str, Any]]:
-        """Make its renderer the active one for a while; give arguments of what is added there."""
+        """Activate its renderer for a while; yield arguments for actors that are added there."""
         # PyVista also removes scalar bars of the active renderer only.
         if self._renderer is None:
             raise RuntimeError(f"{self.name!r} was removed from its plotter; add the connectome again")

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.call_signature import document, plotter_method
+from pvfiblets.plotting.call_signature import document, plotter_method, split_arguments
 from pvfiblets.plotting.components import register
 from pvfiblets.plotting.settings import Given
-from pvfiblets.plotting.settings import arguments as settings_of_call
 from pvfiblets.plotting.slices.settings import SliceCommon, SliceSettings
 
 if TYPE_CHECKING:
@@ -69,13 +68,7 @@ class SlicesComponent:
 
     def add(self, /, source: Any, **arguments: Any) -> SliceStack:
         """Make slices and add them to the plotter."""
-        common = {name: arguments.pop(name, one.default) for name, one in SliceCommon.DECLARED.items()}
-        known = set(settings_of_call(SliceSettings))
-        given = Given(SliceSettings, arguments)
-        own = {name: value for name, value in arguments.items() if name not in known}
-        unknown = next((name for name in own if name not in self.OWN), None)
-        if unknown is not None:
-            raise TypeError(f"{self.ADD}() got an unexpected keyword argument {unknown!r}")
+        common, given, own = split_arguments(self, arguments)
         stack = self._make(source, given, **own)
         if common["name"] is not None:
             for other in self:

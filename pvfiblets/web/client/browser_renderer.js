@@ -15,7 +15,7 @@
   let renderer = null, canvas = null, script = null, wanted = null, busy = false, broken = "", losses = 0;
   let data = new Map();
   let told = "", last = "", saidAt = 0, timer = 0, resting = true;
-  let taken = true, patience = 0; // whether the scene that was told last has been drawn; a timer
+  let taken = true, patience = 0; // whether the newest scene is drawn; timer of the progress note
   let turn = 0; // of the last camera from elsewhere: the server leaves out moves that were made before it
 
   // What there is to draw with --------------------------------------------------------------------
