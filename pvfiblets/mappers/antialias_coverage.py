@@ -28,9 +28,11 @@ class EdgeSmoothing:
     Attributes
     ----------
     sample : bool
-        Whether the picture is one of many whose mean is shown (`antialias_refinement.py`). Its edges are not smoothed,
-        and lines take those pixels whose middles they cover: none is widened to a pixel, and OpenGL's rule
-        for thin lines, which makes slanted ones thinner, does not count.
+        Whether the picture is one of many whose mean is shown (`antialias_refinement.py`). Lines take those pixels whose
+        middles they cover: none is widened to a pixel, and OpenGL's rule for thin lines, which makes slanted ones
+        thinner, does not count.
+    smooths : bool
+        Whether edges are smoothed: of no sample, nor where the mean of all is shown instead.
     layer : callable or None
         Returns what a mapper shows in the frame instead of its picture: its part of a layer of samples.
     widened : bool
@@ -41,14 +43,14 @@ class EdgeSmoothing:
         self._renderer = weak(renderer)
         self._address: str = renderer.GetAddressAsString("")
         self._noted: dict[str, SmoothedLines] = {}
-        self.sample = self.widened = False
+        self.sample = self.smooths = self.widened = False
         self.layer: Callable[[Any], Any] | None = None
         smoothers[self._address] = self
 
-    def begin(self, *, sample: bool = False) -> None:
+    def begin(self, *, sample: bool = False, smooths: bool = True) -> None:
         """Forget what was drawn: another picture begins."""
         self._noted.clear()
-        self.sample, self.widened = sample, False
+        self.sample, self.smooths, self.widened = sample, smooths, False
 
     def note(self, mapper: Any, buffer: Any, narrower: float, rectangle: tuple[int, int, int, int]) -> None:
         """Remember what a mapper has drawn for this picture, and in which part of it that may be."""

@@ -249,6 +249,11 @@ class Refinement:
         return self._frame in (_Frame.PLAIN, _Frame.HELD)
 
     @property
+    def is_sample(self) -> bool:
+        """Whether the frame is a sample, or shows those of all lines at once."""
+        return self._frame in (_Frame.SAMPLE, _Frame.ADDED)
+
+    @property
     def idle(self) -> bool:
         """Whether the frame stays as it is drawn, and nothing of it is taken."""
         return self._frame is _Frame.PLAIN and not (self._changed and self._left and self.seen())

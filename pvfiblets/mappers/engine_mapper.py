@@ -337,7 +337,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             program.SetUniformi(name, unit)
         set_uniforms(program, frame, style, self._drawn, colouring)
         set_effect_uniforms(slot, self._effects, program, draw)
-        if smoother is not None and not smoother.sample:
+        if smoother is not None and smoother.smooths:
             slack, beside = self._drawn.promise + style.reach, style.half_width + SMOOTHED_BESIDE
             rectangle = frame.pixel_rectangle(self._drawn.bounds, slack, beside)
             smoother.note(self, buffer, narrower, rectangle)

@@ -403,7 +403,9 @@ class Picture:
         if self._depth_of_field is not None:
             lenses[self._address] = {}
         if self._smoothing is not None:
-            self._smoothing.begin(sample=self._refinement is not None and not self._refinement.plain)
+            refinement = self._refinement
+            sample = refinement is not None and refinement.is_sample
+            self._smoothing.begin(sample=sample, smooths=refinement is None or refinement.plain)
 
     def _lines_at_once(self, renderer: Any) -> tuple[list[Any], list[Any]]:
         """Return actors whose samples are drawn at once next, and all else that is shown.

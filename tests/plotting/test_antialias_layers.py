@@ -16,6 +16,7 @@ from pvfiblets.engine.effects.sample_positions import sample_positions, sample_s
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets import sample_layers
 from pvfiblets.engine.fiblets.data import chunks
+from pvfiblets.engine.fiblets.renderer import FibletRenderer
 from pvfiblets.engine.fiblets.sample_layers import SampleLayers
 from pvfiblets.engine.gl import shaders
 from pvfiblets.mappers import antialias_windows
@@ -226,8 +227,10 @@ def test_other_pictures_have_one_sample_after_the_other(scene, change, monkeypat
     assert renders.since() >= 4
 
 
-def test_picks_depths_and_memory_are_those_of_the_picture_before(scene, monkeypatch):
+@pytest.mark.parametrize("width", [1.0, 0.7])
+def test_picks_depths_and_memory_are_those_of_the_picture_before(scene, width):
     plotter, actor = scene
+    actor.line_width = width
     plotter.show(auto_close=False)
 
     def seen():
@@ -247,6 +250,24 @@ def test_picks_depths_and_memory_are_those_of_the_picture_before(scene, monkeypa
     assert after[2] == counts
     np.testing.assert_array_equal(after[1], depths)
     assert {buffer["name"] for buffer in actor.explain()["buffers"]} == before
+
+
+@pytest.mark.parametrize("change", [nothing, add_meshes_and_sets, add_tubes])
+def test_behind_the_mean_lies_the_picture_that_was_drawn_before(scene, change, monkeypatch):
+    plotter, actor = scene
+    change(plotter, actor)
+    plotter.show(auto_close=False)
+    plotter.camera.azimuth += 5
+    plotter.render()
+    drawn = []
+    draw = FibletRenderer._draw
+    monkeypatch.setattr(FibletRenderer, "_draw", lambda *given: drawn.append(given) or draw(*given))
+    shot(plotter)
+    assert plotter.picture.samples == 16
+    assert not drawn
+    plotter.camera.azimuth += 5
+    plotter.render()
+    assert len(drawn) == sum(1 for one in plotter.fiblets if one.visibility)
 
 
 @pytest.mark.parametrize("sets", [1, 2])
