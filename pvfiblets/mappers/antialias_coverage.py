@@ -28,9 +28,9 @@ class EdgeSmoothing:
     Attributes
     ----------
     sample : bool
-        Whether the picture is one of many whose mean is shown (`antialias_refinement.py`). Lines take those pixels whose
-        middles they cover: none is widened to a pixel, and OpenGL's rule for thin lines, which makes slanted ones
-        thinner, does not count.
+        Whether the picture is one of many whose mean is shown (`antialias_refinement.py`). Lines take those pixels
+        whose middles they cover: none is widened to a pixel, and OpenGL's rule for thin lines, which makes slanted
+        ones thinner, does not count.
     smooths : bool
         Whether edges are smoothed: of no sample, nor where the mean of all is shown instead.
     layer : callable or None
