@@ -14,6 +14,7 @@ from pvfiblets.invalid_points import CUT, NONFINITE, refuse_beyond
 from pvfiblets.other_libraries import lines_of_grid, streamlines_of
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.ragged import cut_offsets, offsets_from_counts
+from pvfiblets.support.real_numbers import real_numbers
 from pvfiblets.support.summary import warn_of_losses
 from pvfiblets.support.vtk_space import space_of_dataset, to_ras
 
@@ -190,7 +191,7 @@ def _cut(lines: Lines) -> tuple[Lines, dict[str, int]]:
 def _floats(array: Any, keep_single: bool) -> npt.NDArray[Any]:
     """The array in its own memory or another's, as float64 or, if that is kept, as the float32 it is."""
     given = np.asarray(array)
-    return given if keep_single and given.dtype == np.float32 else given.astype(np.float64, copy=False)
+    return given if keep_single and given.dtype == np.float32 else real_numbers(given, "points")
 
 
 def _are_segments(what: Any) -> bool:

@@ -207,8 +207,6 @@ class ValueSurvey:
         lo, hi = (self._lo, self._hi) if self._lo <= self._hi else (0.0, 0.0)
         sample = np.concatenate(self._sample) if self._sample else np.zeros(0, kind)
         reference = value_reference(sample)
-        if kind.kind not in "fiub":
-            raise ValueError(f"per-point values of type {kind} cannot be stored; numbers are needed")
         room = 255 if kind.kind == "f" else 256
         if self._distinct is not None and len(self._distinct) <= room:
             return ValueCoder(_full(self._distinct.astype(kind), 8), len(self._distinct), kind, lo, hi, reference)
@@ -321,6 +319,8 @@ def value_columns(streamlines: Streamlines, names: Iterable[str]) -> Iterator[tu
     """Yield per-point arrays by name; of one with several columns ``name[0]``, ``name[1]``, ..."""
     for name in names:
         column = np.asarray(streamlines.per_point[name])
+        if column.dtype.kind not in "fiub":
+            raise ValueError(f"per-point values {name!r} have the type {column.dtype}, expected real numbers")
         if column.ndim == 1 or column.shape[1] == 1:
             yield name, column.reshape(len(column))
         else:

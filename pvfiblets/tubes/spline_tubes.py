@@ -17,6 +17,7 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.support.real_numbers import real_numbers
 from pvfiblets.support.value_reference import value_reference
 
 __all__ = ["NodeValues", "SplineTubes"]
@@ -352,10 +353,7 @@ def chord_lengths(chords: Doubles) -> Doubles:
 
 
 def _doubles(array: npt.ArrayLike, name: str) -> Doubles:
-    result = np.asarray(array)
-    if result.dtype.kind not in "fiub":
-        raise ValueError(f"{name} have the type {result.dtype}, expected numbers")
-    return np.ascontiguousarray(result, np.float64)
+    return np.ascontiguousarray(real_numbers(array, name))
 
 
 def _integers(array: npt.ArrayLike, name: str) -> Ints:

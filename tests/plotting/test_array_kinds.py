@@ -199,3 +199,30 @@ def test_what_lines_cannot_have_is_said(plotter, three_lines, add):
         with pytest.raises(ValueError, match="words per point; words are taken per line, and numbers per point"):
             getattr(plotter, add)(named_lines(), scalars=scalars)
     assert not plotter.actors
+
+
+SQUARE = np.ones((3, 3))
+LINES = [np.eye(3), 2.0 * np.eye(3)]
+
+
+@pytest.mark.parametrize("kind", [complex, str, object])
+@pytest.mark.parametrize(
+    "give",
+    [
+        lambda plotter, of: plotter.add_spline_tubes([of(line) for line in LINES], radius=1.0),
+        lambda plotter, of: plotter.add_halo_lines([of(line) for line in LINES]),
+        lambda plotter, of: plotter.add_connectome(of(SQUARE), np.eye(3)),
+        lambda plotter, of: plotter.add_connectome(SQUARE, of(np.eye(3))),
+        lambda plotter, of: plotter.add_fiblets(LINES).color_along(of(np.arange(3.0))),
+        lambda plotter, of: pvfiblets.compress(
+            pvfiblets.Streamlines(np.eye(3), [0, 3], per_point={"a": of(np.arange(3.0))}), per_point="all"
+        ),
+    ],
+    ids=["tubes", "halos", "matrix", "positions", "along", "stored"],
+)
+def test_what_are_no_real_numbers_is_refused_by_name(plotter, give, kind):
+    def of(values):
+        return np.full(values.shape, "no number", object) if kind is object else values.astype(kind)
+
+    with pytest.raises(ValueError, match=r"have the type (complex128|<U32|object), expected real numbers"):
+        give(plotter, of)

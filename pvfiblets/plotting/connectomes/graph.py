@@ -17,6 +17,7 @@ from pvfiblets.plotting.settings import number
 from pvfiblets.query.connectome.graph import Graph, mean_streamlines
 from pvfiblets.slices.labels import LabelTable, as_label_table
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.support.real_numbers import real_numbers
 
 NODES = ("spheres", "meshes", None)
 EDGES = ("tubes", "lines", "streamlines", None)
@@ -348,7 +349,7 @@ def _table(names: Any, graph: Graph) -> LabelTable:
 
 
 def _radii(given: Any, n: int) -> np.ndarray:
-    radii = np.asarray(given, np.float64)
+    radii = real_numbers(given, "radii of nodes")
     if radii.shape not in ((), (n,)) or not (np.isfinite(radii) & (radii >= 0.0)).all():
         raise ValueError(f"node_radius is {given!r}; give mm, 0 or more: one number, or one for each of {n} nodes")
     return np.broadcast_to(radii, n)

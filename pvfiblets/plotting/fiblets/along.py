@@ -12,6 +12,7 @@ from pvfiblets.formats.attachments import name_of
 from pvfiblets.images.sources import is_image
 from pvfiblets.query.bundles.along import TABLES, read_profile, values_along
 from pvfiblets.query.bundles.tract_profile import tract_profile
+from pvfiblets.support.real_numbers import real_numbers
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -33,7 +34,7 @@ def along_bundle(
         core = core if core is not None and np.isfinite(core).all() else None
         numbers, said = shown.mean, shown.name
     else:
-        numbers = shown = np.asarray(shown, np.float64)
+        numbers = shown = real_numbers(shown, "values along a bundle")
     like = core if orient_by is None else orient_by
     # A name of its own: the set may hold the array that was averaged.
     name = said if "profile" in said.lower() else f"{said} profile".strip()

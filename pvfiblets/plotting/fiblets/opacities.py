@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pvfiblets.support.real_numbers import real_numbers
+
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
@@ -92,7 +94,7 @@ def apply_transfer(table: Any, transfer: Any) -> None:
 
 def check_range(what: str, values: np.ndarray) -> None:
     """Raise unless numbers lie between 0 and 1; NaN counts as 0."""
-    numbers = np.asarray(values, np.float64)
+    numbers = real_numbers(values, what)
     least, most = float(np.nanmin(numbers, initial=0.0)), float(np.nanmax(numbers, initial=0.0))
     if least < 0.0 or most > 1.0:
         raise ValueError(f"{what} lies between {least:g} and {most:g}; give numbers from 0, not to be seen, to 1")

@@ -15,6 +15,7 @@ from ...errors import FormatError
 from ...formats.attachments import read_values
 from ...streamlines import Streamlines
 from ...support.ragged import blocks
+from ...support.real_numbers import real_numbers
 from ..measures.chunks import without_groups
 from .resampled import check_count
 from .tract_profile import as_line, bundle_lines, resampled_lines, runs_backwards
@@ -58,7 +59,7 @@ def values_along(
     ValueError
         If the values are not at least two numbers.
     """
-    numbers = np.asarray(values, np.float64)
+    numbers = real_numbers(values, "values along a bundle")
     if numbers.ndim != 1:
         raise ValueError(f"values along a bundle have the shape {numbers.shape}; give one number for each position")
     n = check_count(len(numbers))

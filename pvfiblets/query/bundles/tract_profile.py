@@ -22,6 +22,7 @@ import numpy.typing as npt
 from ...codec.decompress import select_streamlines
 from ...images.sources import as_image, is_image
 from ...streamlines import Streamlines
+from ...support.real_numbers import real_numbers
 from ..measures.band_plot import plot_band
 from ..measures.chunks import without_groups
 from ..measures.table import Table
@@ -288,7 +289,7 @@ def runs_backwards(places: Floats, like: Floats) -> npt.NDArray[np.bool_]:
 
 def as_line(given: npt.ArrayLike, n: int) -> Floats:
     """Resample a user's line to places of equal arc length."""
-    line = np.asarray(given, np.float64)
+    line = real_numbers(given, "places of orient_by")
     if line.ndim != 2 or line.shape[1] != 3 or not len(line) or not np.isfinite(line).all():
         raise ValueError(f"orient_by has the shape {line.shape}; give a line as (m, 3) finite numbers of mm")
     return resampled_lines(line, np.zeros(len(line)), np.array([0, len(line)]), n)[0][0]
@@ -325,7 +326,7 @@ def _along(data: FibletSet | Streamlines, chosen: Any, values: Any, n: int) -> t
                 )
             numbers = found.array()
     else:
-        numbers = _rows(data, chosen, np.asarray(values, np.float64))
+        numbers = _rows(data, chosen, real_numbers(values, "values"))
     numbers = np.asarray(numbers, np.float64)
     if numbers.ndim == 2 and numbers.shape[1] == 1:
         numbers = numbers[:, 0]

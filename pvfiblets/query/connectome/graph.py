@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...images.sources import as_image, is_image
+from ...support.real_numbers import real_numbers
 from ..bundles.resampled import iter_resampled
 from .matrix import Connectome, Floats, Ints, end_labels, opened, read_matrix
 
@@ -53,12 +54,12 @@ def as_graph(matrix: Any, labels: Any) -> Graph:
     elif isinstance(matrix, (str, os.PathLike)):
         numbers, names = read_matrix(matrix)
     else:
-        numbers = np.asarray(matrix, np.float64)
+        numbers = real_numbers(matrix, "weights of the matrix")
     weights = _weights(numbers)
     n = len(weights)
     ends = matrix.ends if isinstance(matrix, Connectome) else None
     if not is_image(labels):
-        positions = np.asarray(labels, np.float64)
+        positions = real_numbers(labels, "positions of nodes")
         if positions.shape != (n, 3):
             raise ValueError(
                 f"labels have the shape {positions.shape}; give an image of labels, such as a path or (array, affine), "

@@ -25,6 +25,7 @@ from ...codec.progress import Progress
 from ...errors import FormatError
 from ...images.sources import as_image, is_image
 from ...support.progress_bar import progress_bar
+from ...support.real_numbers import real_numbers
 from ..measures.measures import measure
 
 if TYPE_CHECKING:
@@ -374,7 +375,7 @@ def _numbers(data: Any, given: Any, n: int, name: str) -> Floats:
     if is_image(given) and not (isinstance(given, str) and given in {**data.per_streamline, **data.per_point}):
         return sample(data, given, "mean")
     if not isinstance(given, str):
-        values = np.asarray(given, np.float64)
+        values = real_numbers(given, name)
         if values.shape != (n,):
             raise ValueError(f"{name} have the shape {values.shape}; give one for each of {n:,} streamlines")
         return values
