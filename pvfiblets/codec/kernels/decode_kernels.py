@@ -1,4 +1,4 @@
-"""Compiled kernels: fiblets to points, in parallel, in the arithmetic of `reference`."""
+"""Compiled kernels: fiblets to points, in parallel."""
 
 from __future__ import annotations
 

@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.codec.direction_codebook import CAP_DEGREES, quaternions
-from pvfiblets.codec.reference import first_frame
 
 from ...record import Axes, Figure, Record
 from ...study import Options
 from ...timing import Comparison, Turns
 from ..codec.errors import error_figures
 from . import decoders
+from .reference import first_frame
 
 __all__ = ["STUDY", "DecodeStudy", "Made", "exact", "made"]
 
@@ -60,7 +60,7 @@ def made(n: int, cap: int, step: float, seed: int) -> Made:
 
 def exact(fiblets: Made) -> npt.NDArray[np.longdouble]:
     """Decode in NumPy's longest number (64 bits of mantissa on x86): what the codes mean, ``(n, 60, 3)``."""
-    # The meaning is that of `pvfiblets.codec.reference`: products of the table's quaternions as they are stored.
+    # The meaning is that of `reference`: products of the table's quaternions as they are stored.
     long = np.longdouble
     table = quaternions()[fiblets.cap].astype(long)
     q = fiblets.frames.astype(long)

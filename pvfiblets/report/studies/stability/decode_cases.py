@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from pvfiblets.codec import reference
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.layout import DIRECTION, FIELDS, PAGE_BITS, STEP_LEVELS, unpack
 from pvfiblets.engine import FibletStyle, View
@@ -14,7 +13,7 @@ from pvfiblets.query.selection.endpoints import end_points
 from pvfiblets.report.studies.codec.coded import compress
 from pvfiblets.streamlines import Streamlines
 
-from ..decode import decoders
+from ..decode import decoders, reference
 from ..decode.study import Made, exact, made
 from .case import Cases, Outcome, Setting, worst
 from .render_checks import Array, camera, drawing
