@@ -8,8 +8,7 @@ it in the 3-D view and, pushed along its arrow, takes the cross-hair with it.
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +16,7 @@ import numpy.typing as npt
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkWeakReference
 
+from pvfiblets.plotting.active_view import active_view
 from pvfiblets.plotting.slices.pane import Pane
 
 if TYPE_CHECKING:
@@ -195,7 +195,7 @@ class ObliqueSlice:
                 alive(normal, origin)
 
         options = {"interaction_event": "always", "outline_translation": False, **options}
-        with _active(plotter, view):
+        with active_view(plotter, view):
             widget = plotter.add_plane_widget(
                 moved, normal=tuple(self.normal), origin=tuple(self.plane.origin), bounds=tuple(bounds), **options
             )
@@ -238,17 +238,6 @@ class ObliqueSlice:
             widget.Off()
 
 
-@contextmanager
-def _active(plotter: Any, view: Any) -> Iterator[None]:
-    """Make one of a plotter's views the active one for a while."""
-    renderers, before = plotter.renderers, plotter.renderers.active_index
-    renderers.set_active_renderer(*renderers.index_to_loc(list(renderers).index(view)))
-    try:
-        yield
-    finally:
-        renderers.set_active_renderer(*renderers.index_to_loc(before))
-
-
 def add_oblique_slice(
     workspace: Workspace, plotter: Any, normal: Any, cross_hair_color: Any, color: Any
 ) -> ObliqueSlice:
@@ -256,7 +245,7 @@ def add_oblique_slice(
     if workspace.oblique is not None:
         raise ValueError("the workspace has an oblique slice already; set workspace.oblique.normal")
     views = list(plotter.renderers)
-    with _active(plotter, views[3]):
+    with active_view(plotter, views[3]):
         plane = plotter.slices.add_oblique(workspace.slices, normal, name=NAME, widget=False)
     pane = None
     if len(views) > 4:
