@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from .arrays.array_coder import ArrayCoder
     from .compiled_coder import CompiledCoder
 
-__all__ = ["Encoder"]
-
 Effort = Literal["fast", "high"]
 
 LONG_PART = 2_000_000  # points of a very long streamline that are coded at a time

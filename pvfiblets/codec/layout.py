@@ -37,30 +37,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = [
-    "CAPS",
-    "DIRECTION",
-    "END_BITS",
-    "END_LEVELS",
-    "FIELDS",
-    "LATTICE8",
-    "LATTICE16",
-    "MAX_POINTS",
-    "PAGE",
-    "PAGE_BITS",
-    "PLAIN_BYTES",
-    "PLAIN_POINTS",
-    "WIDE",
-    "WORDS",
-    "Field",
-    "Kind",
-    "glsl_source",
-    "pack",
-    "pack_ends",
-    "unpack",
-    "unpack_ends",
-]
-
 MAX_POINTS = 60
 PAGE_BITS = 14
 PAGE = 1 << PAGE_BITS

@@ -19,8 +19,6 @@ from typing import Literal
 
 from .kernel_cache import is_filled, mark_filled
 
-__all__ = ["STATES", "State", "Work", "prefer_kernels", "without_kernels"]
-
 Work = Literal["coding", "decoding"]
 
 SECONDS_A_POINT: dict[Work, float] = {"coding": 4e-6, "decoding": 0.2e-6}

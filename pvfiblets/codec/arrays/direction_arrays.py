@@ -18,8 +18,6 @@ from .capsule_arrays import capsules
 from .frame_arrays import first_frames, signs, turn, turned_x
 from .turn_arrays import Turning, excess
 
-__all__ = ["anchors_of", "encode_directions", "pack_directions"]
-
 BATCH = 512  # slots at once: the codebooks of their caps take 3 MiB
 TRIES = 3  # cap angles
 

@@ -7,8 +7,6 @@ import numpy.typing as npt
 
 from ..layout import DIRECTION_SCALE
 
-__all__ = ["first_frames", "signs", "turn", "turned_x"]
-
 Array = npt.NDArray[np.float64]
 
 

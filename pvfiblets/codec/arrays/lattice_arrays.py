@@ -18,8 +18,6 @@ from .capsule_arrays import capsules
 from .direction_arrays import anchors_of
 from .turn_arrays import Turning, excess
 
-__all__ = ["encode_lattices", "plan_lattices"]
-
 BATCH = 1024  # slots, or parts that are coded, at once
 NONE = 1 << 30  # bytes, where no kind holds the steps
 

@@ -15,8 +15,6 @@ import numpy.typing as npt
 from ..layout import MAX_POINTS
 from ..tangents import FIRST_SHARE, LEAST_SUM, LOOK_BACK, ONE_POINT
 
-__all__ = ["Turning", "cut", "excess", "turning", "units_of"]
-
 Array = npt.NDArray[np.float64]
 
 

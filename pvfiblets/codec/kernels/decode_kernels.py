@@ -11,8 +11,6 @@ from ..jit import kernel, parallel_kernel
 from ..layout import DIRECTION, PAGE_BITS, PLAIN_BYTES, STEP_LEVELS, WIDE, WIDE_HEADER
 from .direction_kernels import first_frame, turn
 
-__all__ = ["decode", "decode_one"]
-
 BLOCK = 256  # fiblets a thread decodes in one go
 
 

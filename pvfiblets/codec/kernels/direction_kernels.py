@@ -19,18 +19,6 @@ from ..nearest import CELLS, EXTENT
 from .capsule_kernels import capsule
 from .turn_kernels import excess, may_turn, within
 
-__all__ = [
-    "anchor_of",
-    "encode_directions",
-    "first_frame",
-    "follows",
-    "pack_direction",
-    "quantise",
-    "scan",
-    "take_points",
-    "turn",
-]
-
 BLOCK = 64  # slots that share one thread's scratch
 _CELL = CELLS / (2.0 * EXTENT)
 

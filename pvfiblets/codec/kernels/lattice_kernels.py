@@ -15,8 +15,6 @@ from .capsule_kernels import capsule
 from .direction_kernels import follows, quantise, take_points
 from .turn_kernels import excess, may_turn
 
-__all__ = ["encode_lattices", "plan_lattices"]
-
 NONE = 1 << 30
 _NODES = 1 << (TREE_DEPTH + 1)
 

@@ -15,8 +15,6 @@ from ..layout import MAX_POINTS
 from ..tangents import FIRST_SHARE, LEAST_SUM, LOOK_BACK, ONE_POINT
 from .tangent_kernels import direction, unit
 
-__all__ = ["cut", "excess", "may_turn", "within"]
-
 _MARGIN = 0.99  # for what rounding does to either side of a comparison
 
 

@@ -11,8 +11,6 @@ import numpy as np
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = ["TRANSFERS", "Opacities", "find_opacities"]
-
 TRANSFERS = ("linear", "linear_r", "geom", "geom_r", "sigmoid", "sigmoid_r")
 """Transfer functions that a page offers; PyVista has more sigmoids."""
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.slices.plane import SlicePlane
     from pvfiblets.plotting.slices.workspace import Workspace
 
-__all__ = ["NAME", "ObliqueSlice", "Trace", "add_oblique_slice", "turned_about"]
-
 Array = npt.NDArray[np.float64]
 
 NAME = "oblique"  # name of the plane and of its pane
@@ -167,7 +165,7 @@ class ObliqueSlice:
         if bool(visible) == self.plane.visible:
             return
         self.plane.visible = visible
-        widget = self._there()
+        widget = self._live_widget()
         if widget is not None:
             widget.SetEnabled(bool(visible))
         self._workspace.arrange()
@@ -202,7 +200,7 @@ class ObliqueSlice:
         self._widget = vtkWeakReference()
         self._widget.Set(widget)
 
-    def _there(self) -> Any:
+    def _live_widget(self) -> Any:
         return None if self._widget is None else self._widget.Get()
 
     def _dragged(self, normal: Any, origin: Any) -> None:
@@ -212,7 +210,7 @@ class ObliqueSlice:
 
     def _place_widget(self) -> None:
         """Move the widget to the slice, without an event."""
-        widget = self._there()
+        widget = self._live_widget()
         if widget is not None and not np.allclose(
             [widget.GetNormal(), widget.GetOrigin()], [self.normal, self.plane.origin], atol=1e-9
         ):
@@ -233,7 +231,7 @@ class ObliqueSlice:
         """Take lines and widget away; the plane goes with its stack."""
         for trace in self.traces.values():
             trace.remove()
-        widget, self._widget = self._there(), None
+        widget, self._widget = self._live_widget(), None
         if widget is not None:
             widget.Off()
 

@@ -13,8 +13,6 @@ import numpy.typing as npt
 from pvfiblets.codec.direction_codebook import quaternions
 from pvfiblets.codec.layout import DIRECTION_SCALE, PLAIN_BYTES, WIDE_HEADER, Kind
 
-__all__ = ["decode_direction", "decode_lattice", "first_frame", "product", "rotate_x"]
-
 Array = npt.NDArray[np.float64]
 
 

@@ -18,8 +18,6 @@ from ..codec.errors import error_figures
 from . import decoders
 from .reference import first_frame
 
-__all__ = ["STUDY", "DecodeStudy", "Made", "exact", "made"]
-
 STEPS = (0.05, 0.1, 0.2, 0.5, 1.0)  # mm
 QUICK_STEPS = (0.1, 1.0)
 CAPS = (0, 3, 6, 9, 12, 15)
@@ -126,7 +124,7 @@ class DecodeStudy:
             truth = exact(fiblets)
             often = replace(options, repeats=REPEATS * options.repeats)
             compared = Comparison(name, often, Turns(), n * decoders.POINTS, "point")
-            for combination in combinations():
+            for combination in _combinations():
                 if compared.allows(", ".join(combination)):
                     record, decode = measured(fiblets, truth, combination)
                     record.data, record.group = name, group
@@ -134,7 +132,7 @@ class DecodeStudy:
             yield from compared.finish()
 
 
-def combinations() -> list[tuple[str, str, str, str]]:
+def _combinations() -> list[tuple[str, str, str, str]]:
     """Return order, number format, algebra and source of all variants, the codec's own first."""
     every = [(o, n, a, s) for s in SOURCES for a in ALGEBRAS for o in ORDERS for n in NUMBERS]
     return sorted(every, key=lambda variant: variant[2:] != ("quaternions", "table"))

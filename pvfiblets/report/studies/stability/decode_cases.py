@@ -19,8 +19,6 @@ from .case import Cases, Outcome, Setting, worst
 from .render_checks import Array, camera, drawing
 from .synthetic_lines import differences, helix, lines_of, tracking, turning, zigzag
 
-__all__ = ["CASES", "stiff"]
-
 CASES = Cases("decode")
 OF_POINTS = ("length", "end_distance", "mean_curvature", "curvature", "arc_length")
 ALIKE = "compiled decoding as the literal one in NumPy, in float64"
@@ -44,7 +42,7 @@ def stiff() -> dict[str, Streamlines]:
     }
 
 
-def literal(fiblets: FibletSet, f: int) -> Array:
+def _literal(fiblets: FibletSet, f: int) -> Array:
     """Points of one fiblet as the codec's reference decodes them, mm."""
     number = {name: int(unpack(name, getattr(fiblets, field.array)[f])) for name, field in FIELDS.items()}
     anchor = np.array([number[f"anchor_{axis}"] for axis in "xyz"], np.float64)
@@ -70,7 +68,7 @@ def _two_decoders(_: Setting) -> Outcome:
         decoded = np.asarray(fiblets.decompress(dtype=np.float64).points)
         starts = np.append(fiblets.fiblet_points(), fiblets.n_points)
         for f in range(min(fiblets.n_fiblets, 40)):
-            mine = literal(fiblets, f)
+            mine = _literal(fiblets, f)
             off = float(differences(decoded[starts[f] : starts[f + 1]], mine).max(initial=0.0))
             rounding = 64.0 * float(np.spacing(np.abs(mine).max() + np.abs(fiblets.origin).max()))
             found.append(Outcome(off / (rounding + 1e-9 * fiblets.promise), 1.0, "of rounding", name))
