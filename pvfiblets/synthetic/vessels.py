@@ -15,6 +15,8 @@ import numpy.typing as npt
 
 from pvfiblets.volumes.volume import RaycastVolume
 
+__all__ = ["brain_like", "vessel_tree"]
+
 PEAKS = {"uint8": 255.0, "uint16": 4095.0, "int16": 4095.0, "float32": 1.0}
 """Full brightness of each type: angiographs have 8 or 12 bits."""
 
