@@ -16,12 +16,12 @@ from pvfiblets.codec.point_arrays import unit_colours, with_coded_values, with_p
 from pvfiblets.codec.point_arrays import with_point_values as add_values
 from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.formats.attachments import is_values_file, name_of, values_for
+from pvfiblets.images.sources import as_image, is_image
 from pvfiblets.invalid_points import Invalid, valid_points
 from pvfiblets.line_cells import NOT_LINES
 from pvfiblets.lines import refuse_words, rows_of
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
 from pvfiblets.plotting.fiblets.scalars import refuse_unknown
-from pvfiblets.plotting.fiblets.volume_sources import as_volume
 from pvfiblets.plotting.same_names import Preference, with_preference
 from pvfiblets.plotting.scalars import UNNAMED, are_colours, magnitudes
 from pvfiblets.query.measures.measures import Distance, measure
@@ -109,6 +109,16 @@ def as_fiblets(
         error = measure(fiblets, CODING_ERROR, original=streamlines)
         fiblets = with_coded_values(fiblets, CODING_ERROR, error.array())
     return with_point_values(fiblets, scalars) if isinstance(scalars, Distance) else (fiblets, scalars)
+
+
+def as_volume(scalars: Any) -> VolumeSource | None:
+    """Return the volume that ``scalars`` are; ``None`` if they are something else."""
+    if isinstance(scalars, VolumeSource):
+        return scalars
+    if not is_image(scalars):
+        return None
+    image = as_image(scalars)
+    return VolumeSource(image.single, image.affine, name=image.name or "volume")
 
 
 def _keep_named(streamlines: Streamlines, name: str, keep: list[str], rgb: bool | None) -> list[str]:

@@ -65,7 +65,7 @@ def read_mesh(place: Path) -> Any:
 def read_colours(place: Path) -> Any:
     """Return a volume to be sampled along lines, from the same numbers as a script's ``scalars=path`` gives."""
     from pvfiblets.images.sources import as_image
-    from pvfiblets.plotting.fiblets.volume_sources import as_volume
+    from pvfiblets.plotting.fiblets.sources import as_volume
 
     return as_volume(as_image(read_vtk(place) if place.name.lower().endswith(VTK_SUFFIXES) else place))
 

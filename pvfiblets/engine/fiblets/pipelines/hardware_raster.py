@@ -32,8 +32,7 @@ import moderngl
 from ...errors import EngineError
 from ...gbuffer import EMPTY, GBuffer
 from ...gl.bindings import BETWEEN_ROUNDS, FIBLET_ROUNDS
-from ...gl.depth_texture import depth_texture
-from ...gl.moderngl_extras import GLExtras
+from ...gl.moderngl_extras import GLExtras, depth_texture
 from ...gl.shaders import Programs
 from ..data.chunks import Chunk
 from .draw_request import DrawRequest
