@@ -9,8 +9,6 @@ import os
 from numbers import Integral
 from typing import Any
 
-__all__ = ["MODES", "REFINED", "VARIABLE", "check_antialias", "default_antialias", "samples_of"]
-
 MODES = ("off", "coverage", "refined")
 
 REFINED = 16  # samples of a pixel in refined pictures

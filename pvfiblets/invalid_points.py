@@ -16,8 +16,6 @@ import numpy.typing as npt
 from .streamlines import Streamlines
 from .support.ragged import Array, Ints, cut_offsets
 
-__all__ = ["CUT", "LARGEST", "NONFINITE", "Invalid", "refuse_beyond", "valid_points", "warn_of_far", "without_points"]
-
 Invalid = Literal["error", "drop", "split"]
 
 NONFINITE = "non-finite points"

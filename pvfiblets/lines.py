@@ -21,11 +21,6 @@ from pvfiblets.support.vtk_space import space_of_dataset, to_ras
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = [
-    "Lines", "SourceData", "are_words", "flat", "gather", "joined", "numbers_or_colours", "refuse_words", "rows_of",
-    "with_values",
-]  # fmt: skip
-
 Ints = npt.NDArray[np.int64]
 
 _EXPECTED = (
@@ -338,7 +333,7 @@ def with_values(source: Any, path: str | PathLike[str]) -> tuple[Streamlines, st
     return lines, attachments.name_of(path)
 
 
-def told_lines(source: Any) -> Any:
+def _lines_of_other_libraries(source: Any) -> Any:
     """Return the Streamlines of another library's object or of a MultiBlock, with its data; all else as it is."""
     # PolyData and grids stay: their lines may share points, as at bifurcations.
     from pvfiblets.other_libraries import streamlines_of
@@ -352,7 +347,7 @@ def told_lines(source: Any) -> Any:
 def read_lines(source: Any) -> Any:
     """Return the data of a file, or of an object of another library; anything else as it is."""
     if not isinstance(source, (str, PathLike)):
-        return told_lines(source)
+        return _lines_of_other_libraries(source)
     from pvfiblets.codec.files.open_lines import open_lines
 
     return open_lines(source)

@@ -11,26 +11,30 @@ import logging
 import subprocess
 import sys
 
-from .codec import precompile as coding
+from .codec import precompile as codec
+from .codec.kernel_cache import is_filled, mark_filled
 from .query.painting import kernels as painting
 
-__all__ = ["main"]
-
-PAINTING = "painting"
+PARTS = {**codec.PARTS, "painting": painting.compile_all}
 
 
 def main(arguments: list[str]) -> int:
     """Compile the missing kernels, or the named part; return the exit status."""
-    if arguments == [PAINTING]:
-        logging.getLogger("pvfiblets.codec").setLevel(logging.ERROR)  # that kernels are compiled is known
-        painting.compile_all()
-        return 0
     if arguments:
-        raise SystemExit(f"there is no part {arguments[0]!r} to compile; give {PAINTING}, or nothing for all")
-    command = [sys.executable, "-m", "pvfiblets.precompile", PAINTING]
-    own = [] if painting.are_compiled() else [subprocess.Popen(command)]
-    coding.main([])
-    return max((one.wait() for one in own), default=0)
+        if len(arguments) > 1 or arguments[0] not in PARTS:
+            raise SystemExit(f"there is no part {arguments} to compile; give one of {', '.join(PARTS)}, or nothing")
+        logging.getLogger("pvfiblets.codec").setLevel(logging.ERROR)  # that kernels are compiled is known
+        PARTS[arguments[0]]()
+        return 0
+    coded = is_filled("coding") and is_filled("decoding")
+    wanted = [*([] if coded else codec.PARTS), *([] if painting.are_compiled() else ["painting"])]
+    running = [subprocess.Popen([sys.executable, "-m", "pvfiblets.precompile", name]) for name in wanted]
+    codes = {one.wait() for one in running}
+    failed = bool(codes - {0})
+    if not (coded or failed):
+        mark_filled("coding")
+        mark_filled("decoding")
+    return int(failed)
 
 
 if __name__ == "__main__":

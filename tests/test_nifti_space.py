@@ -154,7 +154,7 @@ USES = {
     "painter": lambda path: pvfiblets.query.painting.painter.RegionPainter.open(path).grid.affine,
     "slices": lambda path: pvfiblets.slices.image.as_slice_image(path).affine,
     "volume": lambda path: pvfiblets.volumes.sources.as_raycast_volume(path).affine,
-    "scalars": lambda path: pvfiblets.plotting.fiblets.volume_sources.as_volume(str(path)).affine,
+    "scalars": lambda path: pvfiblets.plotting.fiblets.sources.as_volume(str(path)).affine,
     "region": lambda path: pvfiblets.plotting.region_sources.as_region(path)._volume.to_mm,
     "page's labels": lambda path: label_affine(path),
 }
@@ -182,7 +182,7 @@ def test_the_page_shows_the_warning_of_a_file_it_opens(tmp_path):
 @pytest.mark.parametrize("use", USES)
 def test_every_use_of_a_file_or_an_image_has_the_rule(tmp_path, use):
     import pvfiblets.images.sources
-    import pvfiblets.plotting.fiblets.volume_sources
+    import pvfiblets.plotting.fiblets.sources
     import pvfiblets.plotting.region_sources
     import pvfiblets.query.density.voxel_grid
     import pvfiblets.query.painting.painter

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -208,3 +209,13 @@ def test_faults_made_by_hand_fit_the_code_and_name_tests_that_exist(room):
             assert (ROOT / file).exists(), name
             if inner:
                 assert f"def {inner[-1].partition('[')[0]}(" in (ROOT / file).read_text(), name
+
+
+def test_files_that_the_guide_names_exist():
+    text = (ROOT / "CONTRIBUTING.md").read_text()
+    names = set(re.findall(r"`((?:[\w.]+/)+[\w.]+\.(?:py|glsl|frag|ts|js|md|toml))`", text))
+    names -= {"codec/layout.glsl", "shaders/resolve/emission.glsl"}  # one is made in memory, one is an example
+    names = {name for name in names if not re.search("[A-Z]{4}", name)}
+    homes = [ROOT / room for room in ("", "pvfiblets", "pvfiblets/engine/fiblets", "shaders")]
+    assert len(names) > 60
+    assert [name for name in sorted(names) if not any((home / name).exists() for home in homes)] == []

@@ -4,7 +4,8 @@ import { Mat, Vec, apply, inverse } from "./camera";
 
 /** A region of the world; pvfiblets/plotting/page_cuts.py makes it. */
 export interface Cut {
-  leaves: { centre: Vec; planes?: number[][]; ball?: number[][] }[]; // held where all planes are not below 0, or in the unit ball of what three rows map to; rows over (x, y, z, 1)
+  // Held where all planes are not below 0, or in the unit ball of what three rows map to; rows over (x, y, z, 1).
+  leaves: { centre: Vec; planes?: number[][]; ball?: number[][] }[];
   program: number[]; // postfix: numbers of leaves; -1 both, -2 either, -3 not
 }
 
@@ -21,7 +22,10 @@ export function expression({ leaves, program }: Cut): string {
   return stack[0];
 }
 
-/** The shapes as rows over window coordinates about each one's middle, as pvfiblets/engine/regions/convex_rays.py has them; null where a view has no depth. */
+/**
+ * The shapes as rows over window coordinates about each one's middle, as pvfiblets/engine/regions/convex_rays.py has
+ * them; null where a view has no depth.
+ */
 export function raysOf({ leaves }: Cut, window: Mat, width: number, height: number): Record<string, Float64Array> | null {
   const back = inverse(window), span = [width, height, 1, 1], four = [0, 1, 2, 3];
   if (!back) return null;

@@ -639,7 +639,10 @@ export class FibletSet {
     return found;
   }
 
-  /** Of each streamline 1 where some segment of it, moved by `model`, meets a region, else 0; of the blocks from `from` on, added to `kept`. */
+  /**
+   * Of each streamline 1 where some segment of it, moved by `model`, meets a region, else 0; of the blocks from `from`
+   * on, added to `kept`.
+   */
   through(region: Region, model: Mat, from = 0, kept: Uint8Array = new Uint8Array(this.streamlines)): Uint8Array {
     const { at, size } = region;
     const near = ({ bounds: b }: Block): boolean => {

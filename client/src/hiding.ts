@@ -44,7 +44,10 @@ export function capsules(slots: Float32Array, items: number, share: number, used
   return found;
 }
 
-/** Have `shows[i]` say whether capsule `i` may show; `window` leads from its coordinates to the window, lines reach `brush` pixels to each side. */
+/**
+ * Have `shows[i]` say whether capsule `i` may show; `window` leads from its coordinates to the window, lines reach
+ * `brush` pixels to each side.
+ */
 export function lookAt(
   shapes: Float32Array,
   window: Mat,

@@ -35,7 +35,8 @@ export class Remote implements Parts {
         if (!(error instanceof TypeError)) throw error; // a connection that breaks is a TypeError
         if (!left)
           throw new Error(
-            `${this.file} cannot be read: the connection to its server broke, or there is no server. Files beside a page need one; "python -m http.server" is enough.`,
+            `${this.file} cannot be read: the connection to its server broke, or there is no server. ` +
+              'Files beside a page need one; "python -m http.server" is enough.',
           );
         await new Promise((resolve) => setTimeout(resolve, 500));
       }

@@ -106,7 +106,8 @@ export class Renderer {
     });
     if (!gl)
       throw new GraphicsError(
-        "This browser has no WebGL 2, which the page draws with. Turn on graphics acceleration in its settings, or open the page in another browser.",
+        "This browser has no WebGL 2, which the page draws with. " +
+          "Turn on graphics acceleration in its settings, or open the page in another browser.",
       );
     this.gl = gl;
     canvas.addEventListener("webglcontextlost", (event) => {
@@ -781,7 +782,8 @@ export class Renderer {
       gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     }
     for (const lines of frame.through) {
-      const program = this.program("page/tiles.vert", "page/through.frag", lines.colouring).use(), { texels, depths } = translucent!.of(lines)!;
+      const program = this.program("page/tiles.vert", "page/through.frag", lines.colouring).use(),
+        { texels, depths } = translucent!.of(lines)!;
       this.light(program, lines, drawn, texels, depths);
       translucent!.show(program, lines, frame.share);
       this.drawTiles(program);

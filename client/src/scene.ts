@@ -15,7 +15,8 @@ export interface Colours {
   colour?: Vec; // of "solid"
   data?: number; // of "streamline_rgba" and "point_packed": RGBA for each
   values?: string; // of "point_scalar": a stored array of points, or with `codes` the name of one
-  codes?: { data: number; table: number; bits: 8 | 16; lo: number; hi: number; reference: number }; // of "point_scalar": codes of values that are not stored with the set
+  // Of "point_scalar": codes of values that are not stored with the set.
+  codes?: { data: number; table: number; bits: 8 | 16; lo: number; hi: number; reference: number };
   table?: string; // base64, RGBA: entries, then below, above, NaN
   clim?: [number, number];
   log?: boolean;
@@ -63,7 +64,8 @@ export interface FibletLayer extends Layer {
   sheen: Vec;
   through?: Through;
   kept?: number; // data: a byte for each streamline
-  chosen?: { data: number; colour: [number, number, number, number]; faded: [number, number, number, number] }; // a byte for each streamline; colours, and how much of them
+  // A byte for each streamline; colours, and how much of them.
+  chosen?: { data: number; colour: [number, number, number, number]; faded: [number, number, number, number] };
   cut?: Cut; // by a region, besides planes
   kept_points?: number; // data: a bit for each point
   groups?: { name: string; data: number }[]; // data: uint32, streamlines
@@ -76,7 +78,8 @@ export interface SurfaceLayer extends Layer {
   triangles: number; // data: uint32
   normals?: number; // data: float32
   colours?: number; // data: RGBA
-  edges?: { sides: number; colour: [number, number, number, number]; width: number }; // data: a byte for each corner, of triangles' own (shaders/page/surface.vert)
+  // Data: a byte for each corner, of triangles' own (shaders/page/surface.vert).
+  edges?: { sides: number; colour: [number, number, number, number]; width: number };
   culled?: ("front" | "back")[]; // faces that are left out
   values?: number; // data: float32, through `table`
   table?: string; // base64, RGBA: entries, then below, above, NaN

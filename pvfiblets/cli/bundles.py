@@ -19,8 +19,6 @@ from pvfiblets.query.measures.samples import PointWeights
 from pvfiblets.query.measures.table import Table, check_parquet
 from pvfiblets.support.progress_bar import progress_bar
 
-__all__ = ["bundle_rows", "profile", "table"]
-
 TABLES = (".csv", ".tsv", ".parquet", ".pq")
 PLOTS = (".png", ".svg", ".pdf")
 

@@ -101,7 +101,13 @@ def make_parser() -> argparse.ArgumentParser:
     scenes.add_show(commands)
     scenes.add_page(commands)
     scenes.add_serve(commands)
+    _add_gl(commands)
+    _add_demo(commands)
+    _add_report(commands)
+    return parser
 
+
+def _add_gl(commands: Any) -> None:
     gl = commands.add_parser(
         "gl",
         help="print this machine's OpenGL and its pipelines, and check their output",
@@ -122,6 +128,8 @@ def make_parser() -> argparse.ArgumentParser:
     files.json_option(gl)
     gl.set_defaults(run="pvfiblets.cli.gl:gl")
 
+
+def _add_demo(commands: Any) -> None:
     demo = commands.add_parser(
         "demo",
         help="make, compress and render a tractogram like a whole brain's, and print size and error",
@@ -138,6 +146,8 @@ def make_parser() -> argparse.ArgumentParser:
     files.json_option(demo)
     demo.set_defaults(run="pvfiblets.cli.pictures:demo")
 
+
+def _add_report(commands: Any) -> None:
     report = commands.add_parser(
         "report",
         help="measure error against run time of every approximation and of other methods",
@@ -161,7 +171,6 @@ def make_parser() -> argparse.ArgumentParser:
     report.add_argument("--from", dest="source", metavar="JSON", help="make page and plots again, without measuring")
     report.add_argument("-o", "--output", required=True, metavar="DIR", help="output folder")
     report.set_defaults(run="pvfiblets.cli.report:report")
-    return parser
 
 
 class _Version(argparse.Action):

@@ -10,17 +10,6 @@ from pvfiblets.cli.pipes import add_format_option, add_image_options, add_surfac
 from pvfiblets.cli.values import angle, count, positive
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
-__all__ = [
-    "add_connectome",
-    "add_convert",
-    "add_density",
-    "add_info",
-    "add_profile",
-    "add_table",
-    "add_verify",
-    "json_option",
-]
-
 
 def add_convert(commands: Any) -> None:
     """``convert``."""

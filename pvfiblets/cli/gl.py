@@ -19,7 +19,7 @@ def gl(*, check: bool, output: str, segments: list[float] | None, only: list[str
     ctx = bare_context()
     try:
         with ctx:
-            found, table = Capabilities.of(ctx), pipelines(ctx)
+            found, table = Capabilities.from_context(ctx), pipelines(ctx)
     finally:
         ctx.release()
     if json:

@@ -8,8 +8,6 @@ from contextlib import contextmanager
 
 from pvfiblets.errors import FibletsError
 
-__all__ = ["add_memory_option", "bytes_of_file", "held_to"]
-
 HALF = "50%"
 LEAST_MEMORY = 256 << 20
 

@@ -17,8 +17,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from pvfiblets.web.session.shapes import Load
 
-__all__ = ["Wishes", "add_options", "cut_and_filter", "open_session", "options_of"]
-
 KINDS = ("lines", "volumes", "meshes")  # what `--clip` cuts, by `of=`
 
 Words = Sequence[Sequence[str]]

@@ -13,8 +13,6 @@ from string import Formatter
 
 from pvfiblets.formats.registry import UnknownFormatError, suffix_of
 
-__all__ = ["entities", "fields_of", "filled", "stem_of", "study_root"]
-
 NAMES = {
     "sub": "subject", "ses": "session", "task": "task", "acq": "acquisition", "ce": "contrast_agent", "run": "run",
     "rec": "reconstruction", "dir": "direction", "space": "space", "desc": "description", "atlas": "atlas",

@@ -36,8 +36,6 @@ from .task import Job, run
 if TYPE_CHECKING:
     from distributed import Client
 
-__all__ = ["BatchResult", "batch"]
-
 LEAST_MEMORY = 512 << 20  # bytes that an idle worker with its libraries has, or nearly
 _SCRATCH = re.compile(r"\.batch-(?P<host>.*)-(?P<pid>\d+)-[0-9a-f]{8}")
 

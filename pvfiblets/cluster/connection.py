@@ -15,8 +15,6 @@ from pvfiblets.support import memory
 if TYPE_CHECKING:
     from distributed import Client
 
-__all__ = ["SHARE", "connected", "default_workers"]
-
 SHARE = 0.8  # of the machine's memory, for all workers together
 DEATHS = 10  # workers that may die with a task before it is given up
 DASHBOARD = 8787

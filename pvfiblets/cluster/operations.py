@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
     from .tables import Columns
 
-__all__ = ["OPERATIONS", "Operation"]
-
 COMPRESSED = ".fiblets"
 PIECE = 1 << 20  # points looked at together
 

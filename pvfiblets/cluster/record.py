@@ -16,8 +16,6 @@ from typing import Any, BinaryIO
 
 from pvfiblets.support.whole_files import replacing
 
-__all__ = ["Entry", "Output", "Record", "checksum", "fingerprint"]
-
 PIECE = 1 << 22
 
 
@@ -49,7 +47,7 @@ class Output:
     sha256: str
 
     @classmethod
-    def of(cls, folder: Path, path: Path) -> Output:
+    def from_file(cls, folder: Path, path: Path) -> Output:
         """Describe a file below a folder."""
         return cls(path.relative_to(folder).as_posix(), *fingerprint(path), checksum(path))
 

@@ -12,10 +12,8 @@ from pvfiblets.errors import FibletsError
 
 from .bids import entities, stem_of, study_root
 
-__all__ = ["SourceFile", "find_sources"]
 
-
-class NoSourceError(FibletsError, ValueError):
+class _NoSourceError(FibletsError, ValueError):
     """A pattern that no file matches."""
 
 
@@ -54,7 +52,7 @@ def find_sources(patterns: str | os.PathLike[str] | Sequence[str | os.PathLike[s
         paths = sorted(glob.glob(text, recursive=True)) if wild else [text]  # noqa: PTH207 - of absolute ones, too
         paths = [p for p in paths if Path(p).is_file() or (Path(p).is_dir() and p.endswith(".fiblets"))]
         if not paths:
-            raise NoSourceError(f"{text!r} matches no file; put a pattern between quotes, such as 'sub-*/dwi/*.trk'")
+            raise _NoSourceError(f"{text!r} matches no file; put a pattern between quotes, such as 'sub-*/dwi/*.trk'")
         for place in paths:
             found.setdefault(_absolute(place), _fixed(text) if wild else None)
     common = Path(os.path.commonpath([path.parent for path in found]))

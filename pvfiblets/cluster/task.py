@@ -95,7 +95,7 @@ def _done(job: Job) -> tuple[Output, ...]:
         for there, place in places:
             place.parent.mkdir(parents=True, exist_ok=True)
             _put(there, place)
-        return tuple(Output.of(folder, place) for _, place in places)
+        return tuple(Output.from_file(folder, place) for _, place in places)
     finally:
         shutil.rmtree(own, ignore_errors=True)
 

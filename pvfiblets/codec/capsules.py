@@ -23,8 +23,6 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["MARGIN", "capsule_ends", "capsule_radius", "distances"]
-
 Array = npt.NDArray[np.float64]
 MARGIN = 2.0**-16
 

@@ -18,8 +18,6 @@ from .layout import CAPS
 if TYPE_CHECKING:
     from .parameters import Parameters
 
-__all__ = ["CompiledCoder", "search_tables"]
-
 Ints = npt.NDArray[np.int64]
 
 

@@ -29,8 +29,6 @@ from .files.fiblets_file import make_header
 from .kernels import copy_kernels
 from .layout import PAGE, WORDS, unpack
 
-__all__ = ["CHUNK", "Copies"]
-
 CHUNK = 4096  # streamlines made at a time
 Ints = npt.NDArray[np.int64]
 Show = Callable[[int], object]

@@ -34,8 +34,6 @@ import numpy.typing as npt
 
 from .layout import CAPS
 
-__all__ = ["CAP_DEGREES", "CODES", "cap_ratios", "directions", "disc", "packed", "packed_scales", "quaternions"]
-
 CODES = 256
 PACKED_LEVELS = 32767
 CAP_DEGREES = tuple(float(a) for a in np.round(1.5 * (178.0 / 1.5) ** (np.arange(CAPS) / (CAPS - 1)), 3))

@@ -1,6 +1,6 @@
 """Streamlines to fiblet records, chunk by chunk: cut and code; :mod:`.record_writer` lays them out in pages.
 
-A streamline is cut every 60 points, or a little before where it bends sharply there (:mod:`.turn_reference`). Each cut
+A streamline is cut every 60 points, or a little before where it bends sharply there (:mod:`.tangents`). Each cut
 is first tried with direction bytes; where those exceed the error bound (steps that vary, bends beyond the cap angles)
 or turn a tangent too far it is coded on the lattice instead, split further where that saves bytes. No point is ever
 dropped or moved by more than the error bound.
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from .arrays.array_coder import ArrayCoder
     from .compiled_coder import CompiledCoder
 
-__all__ = ["Encoder"]
-
 Effort = Literal["fast", "high"]
 
 LONG_PART = 2_000_000  # points of a very long streamline that are coded at a time
@@ -43,7 +41,7 @@ class Encoder(RecordWriter):
 
     effort: Effort = "fast"  # greedy, or looking ahead with a beam
     # largest angle between true and drawn tangents, degrees, at the ends of segments longer than a pixel of a
-    # full-screen view (`.turn_reference`); None leaves directions alone
+    # full-screen view (`.tangents`); None leaves directions alone
     max_angle: float | None = DEFAULT_ANGLE
 
     def __post_init__(self) -> None:

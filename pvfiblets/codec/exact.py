@@ -22,8 +22,6 @@ from .layout import END_LEVELS, PLAIN_BYTES, PLAIN_POINTS, WIDE, pack_ends, unpa
 from .parameters import Parameters
 from .record_writer import FibletChunk, RecordWriter, join
 
-__all__ = ["PlainWriter", "plain_records", "raw_bytes"]
-
 BLOCK_POINTS = 1 << 20  # points per block of records
 
 Floats = npt.NDArray[np.float64]

@@ -21,8 +21,6 @@ from .restrict import restrict
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["exact_bounds", "extract", "once", "save_as"]
-
 Ints = npt.NDArray[np.int64]
 Bounds = tuple[float, float, float, float, float, float]
 

@@ -25,9 +25,7 @@ import numba
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.np.ufunc import parallel
 
-from .kernel_cache import kept_folder, sources_digest
-
-__all__ = ["kernel", "parallel_kernel"]
+from .kernel_cache import kernel_folder, sources_digest
 
 logger = logging.getLogger("pvfiblets.codec")
 NOTICED = 1.0  # seconds, after which one wonders
@@ -73,7 +71,7 @@ class _KeyedBySources(FunctionCache):
             return
         digest = sources_digest(Path(function.__code__.co_filename).resolve().parent)
         try:
-            folder = str(kept_folder(digest))
+            folder = str(kernel_folder(digest))
         except OSError as error:
             logger.debug("kernels are kept beside their sources: %s", error)
             return

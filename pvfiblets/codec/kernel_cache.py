@@ -11,8 +11,6 @@ from pathlib import Path
 
 from ..support.cache_folder import cache_folder
 
-__all__ = ["HOME", "is_filled", "kept_folder", "mark_filled", "sources_digest"]
-
 FORGOTTEN = 30 * 86400.0  # seconds, after which kernels of other sources are not kept any more
 HOME = Path(__file__).resolve().parent
 
@@ -37,7 +35,7 @@ def _sources(folder: Path) -> list[Path]:
 
 
 @cache
-def kept_folder(digest: str) -> Path:
+def kernel_folder(digest: str) -> Path:
     """Return the folder of the kernels for a digest of sources; remove other folders unused for a month."""
     home = cache_folder() / "kernels"
     folder = home / digest[:16]
@@ -52,7 +50,7 @@ def kept_folder(digest: str) -> Path:
 def _mark(work: str, folder: Path) -> Path:
     digest = sources_digest(folder)
     chosen = os.environ.get("NUMBA_CACHE_DIR")  # the user's own choice
-    return Path(chosen) / f"pvfiblets-{digest[:16]}-{work}" if chosen else kept_folder(digest) / work
+    return Path(chosen) / f"pvfiblets-{digest[:16]}-{work}" if chosen else kernel_folder(digest) / work
 
 
 def is_filled(work: str, folder: Path = HOME) -> bool:

@@ -1,6 +1,6 @@
 """The fiblet record: the one place that states how a fiblet is laid out in bits.
 
-Everything that packs or unpacks a record (NumPy reference, compiled kernels, shaders, the file format) takes the bits
+Everything that packs or unpacks a record (NumPy, compiled kernels, shaders, the file format) takes the bits
 of fields from here; :func:`glsl_source` writes the same table as GLSL, so that a shader cannot disagree with Python.
 How many words there are is also said where they are read: ``decode_kernels``, ``copy_kernels``, ``query.passing`` and
 the shaders ``fiblets/data`` take two words of an anchor and three to decode by.
@@ -36,30 +36,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-
-__all__ = [
-    "CAPS",
-    "DIRECTION",
-    "END_BITS",
-    "END_LEVELS",
-    "FIELDS",
-    "LATTICE8",
-    "LATTICE16",
-    "MAX_POINTS",
-    "PAGE",
-    "PAGE_BITS",
-    "PLAIN_BYTES",
-    "PLAIN_POINTS",
-    "WIDE",
-    "WORDS",
-    "Field",
-    "Kind",
-    "glsl_source",
-    "pack",
-    "pack_ends",
-    "unpack",
-    "unpack_ends",
-]
 
 MAX_POINTS = 60
 PAGE_BITS = 14

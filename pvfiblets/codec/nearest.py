@@ -19,8 +19,6 @@ import numpy.typing as npt
 from .direction_codebook import CAP_DEGREES, CODES, cap_ratios, directions
 from .jit import kernel
 
-__all__ = ["CELLS", "EXTENT", "Candidates", "candidates"]
-
 CELLS = 256
 TILE = 16  # cells along an edge of those whose candidates are first chosen together
 EXTENT = 1.25  # turns a little beyond the cap angle are common in closed loop

@@ -18,8 +18,6 @@ import numpy.typing as npt
 
 from ..streamlines import Streamlines
 
-__all__ = ["Order", "check_order", "ends_order", "hilbert_keys", "hilbert_order"]
-
 Order = Literal["input", "hilbert"]
 BITS = 10  # a number: six of them make a key of 60 bits
 Ints = npt.NDArray[np.int64]

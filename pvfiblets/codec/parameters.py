@@ -18,20 +18,6 @@ from .layout import END_LEVELS, MAX_POINTS
 from .point_values import ValueSurvey, value_columns
 from .small_sets import without_kernels
 
-__all__ = [
-    "DEFAULT_ANGLE",
-    "DEFAULT_PROMISE_EXTENT",
-    "DEFAULT_PROMISE_STEPS",
-    "EXACT_BELOW",
-    "EXACT_UP_TO",
-    "Parameters",
-    "Survey",
-    "bounds_of",
-    "median_step",
-    "survey",
-    "tell_far",
-]
-
 DEFAULT_ANGLE = 10.0  # degrees between true and drawn tangents
 DEFAULT_PROMISE_STEPS = 0.1
 DEFAULT_PROMISE_EXTENT = 1.0 / 4000.0  # of the diagonal of a view along an axis: half a pixel on a full screen

@@ -27,19 +27,6 @@ from ..support.value_reference import value_reference
 if TYPE_CHECKING:
     from ..streamlines import Streamlines
 
-__all__ = [
-    "PointValues",
-    "ValueCoder",
-    "ValueSurvey",
-    "as_codes",
-    "code_values",
-    "linear_table",
-    "opened_table",
-    "stored_table",
-    "value_columns",
-    "value_errors",
-]
-
 Array = npt.NDArray[Any]
 Floats = npt.NDArray[np.float64]
 

@@ -1,22 +1,12 @@
-"""Compiles the kernels that code and decode streamlines: ``python -m pvfiblets.codec.precompile``.
-
-Without it they are compiled when a set is first large enough for them. numba compiles one
-kernel at a time in a process; so several processes do, side by side.
-"""
+"""Calls that compile the kernels that code and decode streamlines; see `pvfiblets.precompile`."""
 
 from __future__ import annotations
 
-import logging
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
 
 from ..streamlines import Streamlines
-from .kernel_cache import is_filled, mark_filled
-
-__all__ = ["main"]
 
 
 def _lines() -> Streamlines:
@@ -74,24 +64,3 @@ def _decoding() -> None:
 
 
 PARTS = {"directions": _directions, "lattices": _lattices, "decoding": _decoding}
-
-
-def main(arguments: list[str]) -> None:
-    """Compile the part that is named, or all parts unless that was done before."""
-    if arguments:
-        logging.getLogger("pvfiblets.codec").setLevel(logging.ERROR)  # that kernels are compiled is known
-        PARTS[arguments[0]]()
-        return
-    if is_filled("coding") and is_filled("decoding"):
-        return
-    command = [sys.executable, "-m", "pvfiblets.codec.precompile"]
-    running = [subprocess.Popen([*command, name]) for name in PARTS]
-    codes = [part.wait() for part in running]
-    if any(codes):
-        sys.exit(1)
-    mark_filled("coding")
-    mark_filled("decoding")
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

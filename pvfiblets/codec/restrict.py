@@ -24,8 +24,6 @@ from .layout import FIELDS, PAGE, PAGE_BITS, WORDS, unpack
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["Records", "Restriction", "even_share", "parts_of", "restrict"]
-
 Ints = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 
@@ -60,7 +58,7 @@ class Restriction:
     def __init__(self, fiblets: FibletSet, ids: Any) -> None:
         chosen = select_streamlines(fiblets.n_streamlines, ids)
         self._whole = fiblets
-        with _damage_told(fiblets):
+        with _damage_named(fiblets):
             self._keep = _kept_ranks(fiblets, chosen)
             self.n_ranks = int(self._keep.sum())
             self.n_fiblets = self.n_codes = self.n_points = 0
@@ -81,7 +79,7 @@ class Restriction:
 
     def make(self) -> FibletSet:
         """Make it; see :func:`restrict`."""
-        with _damage_told(self._whole):
+        with _damage_named(self._whole):
             return self._make()
 
     def _make(self) -> FibletSet:
@@ -111,7 +109,7 @@ class Restriction:
 
 
 @contextmanager
-def _damage_told(fiblets: FibletSet) -> Iterator[None]:
+def _damage_named(fiblets: FibletSet) -> Iterator[None]:
     """Raise for a damaged file; other errors pass."""
     try:
         yield

@@ -14,8 +14,6 @@ from .layout import PAGE, PAGE_BITS, unpack
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["StreamlineRanges", "coded_rows", "ranges_of"]
-
 FEW = 256  # streamlines that are looked for one by one; more are found by reading all records
 Ints = npt.NDArray[np.int64]
 

@@ -11,6 +11,24 @@ has no direction, and the point is left out as well.
 
 Drawn tangents are as the shaders have them (``fiblets/attributes/tangent.glsl``): the same, but at the first point of a
 fiblet that of the segment after it.
+
+How far the encoder may turn segments: let ``u`` and ``v`` be the unit vectors of the segments before and after a
+point, ``u'`` and ``v'`` their decoded vectors, and ``A`` the bound of the angle between the tangents, which are the
+directions of ``S = u + v`` and of ``S' = u' + v'``. From ``|S' - S| <= |u' - u| + |v' - v|`` follows that the angle
+between both is at most ``A`` where
+
+    ``|u' - u| <= sin(A) |S| / 2`` and ``|v' - v| <= sin(A) |S| / 2``.
+
+Each segment so has a bound of its own, the lesser of its two ends', whatever its neighbours decode to: fiblets
+can be coded apart from each other. At the end of a line there is one segment only, and it has the whole bound. The
+sharper the bend, the shorter is ``S``, and the finer are its two segments coded.
+
+At the first point of a fiblet the renderers draw the direction ``v'`` of the segment after it: the segment before
+belongs to a fiblet that is not decoded there. So ``v'`` has to be within ``A`` of ``S`` at such a point. That bounds it
+by the chord of ``A`` less the distance of ``v`` from the unit vector of ``S``, and no fiblet should begin where ``v``
+alone is off by more than most of ``A``.
+
+Points at which no segment longer than a pixel ends, and those where a line turns back on itself, bound nothing.
 """
 
 from __future__ import annotations
@@ -24,6 +42,9 @@ ONE_POINT = 1e-3  # pixels: points that are no farther apart are one, and no dir
 
 LEAST_SUM = 1e-3
 """Sums of two unit vectors that are shorter have no direction: the line turns by more than 179.9 degrees."""
+
+FIRST_SHARE = 0.8  # of the angle that a bend may take at the first point of a fiblet; the rest is for coding
+LOOK_BACK = 20  # points before the 60th among which a slot may end
 
 
 def pixel(bounds: Sequence[float]) -> float:

@@ -25,10 +25,8 @@ from .gl.passes import Passes
 from .gl.shaders import Programs
 from .view import Style, View
 
-__all__ = ["Drawable", "Target", "sizes_of"]
 
-
-class GpuResource(Protocol):
+class _GpuResource(Protocol):
     """GPU memory of a renderer; ``sizes``, ``buffers`` or ``nbytes`` give its size."""
 
     def release(self) -> None:
@@ -36,7 +34,7 @@ class GpuResource(Protocol):
         ...
 
 
-class Target(GpuResource, Protocol):
+class Target(_GpuResource, Protocol):
     """Textures that a renderer draws a picture into."""
 
     @property
@@ -46,7 +44,7 @@ class Target(GpuResource, Protocol):
 
 
 AnyStyle = TypeVar("AnyStyle", bound=Style)
-AnyResource = TypeVar("AnyResource", bound=GpuResource)
+AnyResource = TypeVar("AnyResource", bound=_GpuResource)
 AnyTarget = TypeVar("AnyTarget", bound=Target)
 
 
@@ -71,7 +69,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         self._passes = Passes(ctx)
         self._borrows = lender is not None
         self._programs: Programs = Programs(ctx, constants) if lender is None else lender._programs  # noqa: SLF001
-        self._kept_on_gpu: list[tuple[str, GpuResource]] = []
+        self._kept_on_gpu: list[tuple[str, _GpuResource]] = []
         self._targets: dict[str, tuple[Hashable, Target]] = {} if lender is None else lender._targets  # noqa: SLF001
         self._buffer: GBuffer | None = None
         self._made: tuple[View, Style] | None = None
@@ -222,7 +220,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         self._kept_on_gpu.append((name, kept))
         return kept
 
-    def _drop(self, kept: GpuResource) -> None:
+    def _drop(self, kept: _GpuResource) -> None:
         """Give one thing back before the others."""
         self._kept_on_gpu = [(name, other) for name, other in self._kept_on_gpu if other is not kept]
         kept.release()

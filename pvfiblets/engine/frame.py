@@ -17,8 +17,6 @@ import numpy.typing as npt
 from .gl.uniform_struct import Field, UniformStruct
 from .view import Style, View
 
-__all__ = ["FRAME_BLOCK", "frame_block", "local_frame", "reference_anchor", "segment_pixels"]
-
 FAR_SIZE = 4.0  # pixels up to which a fiblet is drawn as one segment (paper: Schertzer et al. 2022, section 3.4.4).
 
 FRAME_BLOCK = UniformStruct(

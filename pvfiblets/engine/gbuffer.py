@@ -31,8 +31,6 @@ import moderngl
 
 from .errors import EngineError
 
-__all__ = ["EMPTY", "GBuffer"]
-
 EMPTY = 0xFFFFFFFF
 
 RELIEF = {"across": "f2", "ink": "f2", "normal": "u4"}  # type of the texture `across` by its contents

@@ -17,8 +17,7 @@ from .drawable import AnyStyle, Drawable
 from .errors import EngineError
 from .gbuffer import EMPTY, GBuffer
 from .gl.bindings import HIT_KEYS
-from .gl.depth_texture import depth_texture
-from .gl.moderngl_extras import GLExtras
+from .gl.moderngl_extras import GLExtras, depth_texture
 from .gl.shaders import Programs
 
 if TYPE_CHECKING:

@@ -14,8 +14,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 if TYPE_CHECKING:
     from .gl.passes import Passes
 
-__all__ = ["PIECE", "Pieces", "finish"]
-
 PIECE = 0.05  # seconds of a piece, about: as long as an event waits that comes while one is drawn
 
 FIRST = 8  # work groups of a stage whose time is not known yet: some 2,000 fiblets

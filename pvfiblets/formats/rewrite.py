@@ -13,8 +13,6 @@ from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.unfinished import remove_unfinished
 from pvfiblets.support.whole_files import naming_target
 
-__all__ = ["rewrite"]
-
 PIECE = 1 << 20  # points; larger pieces are no faster
 
 

@@ -18,8 +18,6 @@ from numpy.typing import DTypeLike, NDArray
 
 from pvfiblets.support.whole_files import naming_target
 
-__all__ = ["LONG", "is_long", "scratch_array", "scratch_bytes", "spans"]
-
 LONG = 4_000_000  # points of one line beyond which its arrays are kept on disk and gone through in parts
 
 SPAN = 1_000_000  # rows of each part

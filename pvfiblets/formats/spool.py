@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.support.unfinished import scratch_beside
+from pvfiblets.support.unfinished import scratch_folder_for
 
 Array = NDArray[Any]
 
@@ -20,7 +20,7 @@ Array = NDArray[Any]
 @contextmanager
 def gathered(chunks: Iterable[Streamlines], folder: str | PathLike[str]) -> Iterator[Streamlines]:
     """Join consecutive pieces into one object whose points and columns are maps of temporary files."""
-    with scratch_beside(Path(folder) / "lines") as scratch, ExitStack() as files_open:
+    with scratch_folder_for(Path(folder) / "lines") as scratch, ExitStack() as files_open:
         points = _Column(Path(scratch) / "points", files_open)
         columns: dict[str, dict[str, _Column]] = {}
         counts: list[Array] = []

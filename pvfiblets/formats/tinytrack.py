@@ -183,7 +183,7 @@ def _clusters(path: str, matrices: dict[str, _Matrix], n: int) -> tuple[dict[str
     if len(cluster) != n or cluster.dtype.kind not in "iu":
         raise FormatError(path, position, f"{len(cluster)} clusters of {cluster.dtype}", f"{n} integers")
     colors = matrices["color"].values if "color" in matrices else np.zeros(0, np.int64)
-    names = _names_beside(path)
+    names = _sibling_names(path)
     order = np.argsort(cluster, kind="stable")
     ids, firsts = np.unique(cluster[order], return_index=True)
     for i, members in zip(ids.tolist(), np.split(order, firsts[1:]), strict=True):
@@ -198,7 +198,7 @@ def _clusters(path: str, matrices: dict[str, _Matrix], n: int) -> tuple[dict[str
     return groups, per_group
 
 
-def _names_beside(path: str) -> list[str]:
+def _sibling_names(path: str) -> list[str]:
     """Return the lines of ``NAME.tt.gz.txt`` or ``NAME.txt``, the clusters' names, if there."""
     whole = Path(path)
     for candidate in (whole.name + ".txt", whole.name[: -len(".tt.gz")] + ".txt"):

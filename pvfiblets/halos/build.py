@@ -18,8 +18,6 @@ from .geometry import HaloLines, HaloPoints
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = ["FILTER", "SCALARS", "LinesAndValues", "as_halo_lines", "as_halo_points"]
-
 SCALARS, FILTER = "scalars", "filter"  # names of unnamed arrays
 
 Array = npt.NDArray[Any]

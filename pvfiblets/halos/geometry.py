@@ -14,8 +14,6 @@ import numpy.typing as npt
 from pvfiblets.support.ragged import as_offsets
 from pvfiblets.support.value_reference import value_reference
 
-__all__ = ["HaloLines", "HaloPoints"]
-
 Values = Mapping[str, npt.NDArray[Any]]
 _NONE: Values = MappingProxyType({})
 
@@ -52,25 +50,12 @@ class _AtPoints:
 
 @dataclass(frozen=True, eq=False)
 class HaloLines(_AtPoints):
-    """Polylines with halos.
+    """Polylines with halos."""
 
-    Parameters
-    ----------
-    points : ndarray
-        ``(n_points, 3)`` float32 or float64, mm, finite. Points may repeat.
-    offsets : array_like
-        ``(n_lines + 1,)`` int64: line ``i`` is ``points[offsets[i]:offsets[i + 1]]``. Lines of one point show nothing.
-    values : mapping of str to ndarray
-        A row for each point: ``(n_points,)`` numbers, NaN among them, or ``(n_points, 4)`` float32 RGBA in 0..1.
-
-    Raises
-    ------
-    ValueError
-        If shapes contradict each other, or a coordinate is not finite; the message names the row and its value.
-    """
-
-    points: npt.NDArray[np.floating[Any]]
+    points: npt.NDArray[np.floating[Any]]  # ``(n_points, 3)`` float32 or float64, mm, finite. Points may repeat.
+    # ``(n_lines + 1,)`` int64: line ``i`` is ``points[offsets[i]:offsets[i + 1]]``. Lines of one point show nothing.
     offsets: npt.NDArray[np.int64]
+    # A row for each point: ``(n_points,)`` numbers, NaN among them, or ``(n_points, 4)`` float32 RGBA in 0..1
     values: Values = field(default_factory=lambda: _NONE)
 
     def __post_init__(self) -> None:
@@ -112,23 +97,10 @@ class HaloLines(_AtPoints):
 
 @dataclass(frozen=True, eq=False)
 class HaloPoints(_AtPoints):
-    """Points with halos.
+    """Points with halos."""
 
-    Parameters
-    ----------
-    points : ndarray
-        ``(n_points, 3)`` float32 or float64, mm, finite.
-    values : mapping of str to ndarray
-        As of `HaloLines`.
-
-    Raises
-    ------
-    ValueError
-        As of `HaloLines`.
-    """
-
-    points: npt.NDArray[np.floating[Any]]
-    values: Values = field(default_factory=lambda: _NONE)
+    points: npt.NDArray[np.floating[Any]]  # ``(n_points, 3)`` float32 or float64, mm, finite
+    values: Values = field(default_factory=lambda: _NONE)  # As of `HaloLines`
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", _checked_points(self.points, "points"))

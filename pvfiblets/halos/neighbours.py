@@ -20,8 +20,6 @@ from pvfiblets.support.ragged import offsets_from_counts
 from .geometry import HaloLines
 from .grid import Grid
 
-__all__ = ["Cloud", "Frame", "Paths", "distances"]
-
 Doubles = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 

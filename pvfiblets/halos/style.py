@@ -6,8 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["DISPLACEMENTS", "TABLE_SIZE", "HaloStyle"]
-
 DISPLACEMENTS = ("linear", "square", "square root")  # displacement functions by name (paper: figure 17)
 
 TABLE_SIZE = 64  # greatest number of entries of a displacement table
@@ -19,60 +17,32 @@ MAX_TAPERED = 1000
 class HaloStyle:
     """The style of lines, or points, with halos.
 
-    Parameters
-    ----------
-    line_width : float
-        mm, of a line, or the diameter of a point; above 0.
-    strip_width : float
-        mm, of a line together with the halos on both its sides, or of a point with its own; at least ``line_width``.
-    max_displacement : float
-        mm from a line to the edge of its halo behind it; 0 lets every halo hide everything behind its line.
-    displacement : str or tuple of float
-        How far behind its line a halo lies between its middle and its edge (equation 3): one of `DISPLACEMENTS`, or
-        2 to `TABLE_SIZE` numbers in 0..1, the function at equally spaced places from 0 to 1, linear between them.
-    n_tapered : int
-        Vertices over which the ends of lines narrow; 0 leaves them square. Points have no ends.
-    t_tapered : float
-        Where along the mask, from 0 at one end of a line to 1 at the other, the first ``n_tapered`` vertices end
-        (section 3.4), above 0 and at most 0.5. The mask is as wide as the strip from 0.2 to 0.8 of it.
-    width_cue : float
-        0 to 1: thins the farthest lines of the data by this share, against the nearest, for depth cueing by line
-        width. Halos keep their width.
-    min_width : float
-        Pixels that a line takes at least, however thin and far it is; 0 leaves it as it is.
-    smooth : bool
-        Whether the edge between a line and its own halo is a gradual transition; else every pixel is one or the other.
-    filter_by : str, optional
-        Values that filter lines (section 3.6): only numbers from ``low`` to ``high`` are shown, and
-        NaN is not.
-    low, high : float
-        Thresholds; -inf and inf let all numbers pass.
-    filter_taper : float
-        mm over which lines narrow where the filter ends them; 0 leaves those ends square.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of its range; the message names it.
-
-    Notes
-    -----
     Source: Everts, Bekker, Roerdink and Isenberg, "Depth-dependent halos" (2009), sections 3.2 to 3.6.
     """
 
-    line_width: float
+    line_width: float  # mm, of a line, or the diameter of a point; above 0
+    # mm, of a line together with the halos on both its sides, or of a point with its own; at least ``line_width``
     strip_width: float
+    # mm from a line to the edge of its halo behind it; 0 lets every halo hide everything behind its line
     max_displacement: float
+    # How far behind its line a halo lies between its middle and its edge (equation 3): one of `DISPLACEMENTS`, or 2
+    # to `TABLE_SIZE` numbers in 0..1, the function at equally spaced places from 0 to 1, linear between them
     displacement: str | tuple[float, ...] = "linear"
-    n_tapered: int = 2
+    n_tapered: int = 2  # Vertices over which the ends of lines narrow; 0 leaves them square. Points have no ends.
+    # Where along the mask, from 0 at one end of a line to 1 at the other, the first ``n_tapered`` vertices end
+    # (section 3.4), above 0 and at most 0.5. The mask is as wide as the strip from 0.2 to 0.8 of it.
     t_tapered: float = 0.2
+    # 0 to 1: thins the farthest lines of the data by this share, against the nearest, for depth cueing by line width.
+    # Halos keep their width.
     width_cue: float = 0.0
-    min_width: float = 1.0
+    min_width: float = 1.0  # Pixels that a line takes at least, however thin and far it is; 0 leaves it as it is
+    # Whether the edge between a line and its own halo is a gradual transition; else every pixel is one or the other
     smooth: bool = True
+    # Values that filter lines (section 3.6): only numbers from ``low`` to ``high`` are shown, and NaN is not
     filter_by: str | None = None
-    low: float = -math.inf
+    low: float = -math.inf  # Thresholds; -inf and inf let all numbers pass
     high: float = math.inf
-    filter_taper: float = 0.0
+    filter_taper: float = 0.0  # mm over which lines narrow where the filter ends them; 0 leaves those ends square
 
     def __post_init__(self) -> None:
         self._check("line_width", self.line_width > 0.0, "a number of mm above 0")

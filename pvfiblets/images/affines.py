@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["affine", "invert_affine"]
-
 Array = npt.NDArray[np.float64]
 
 _WORST_CONDITION = 1e12  # beyond, a float64 inverse has fewer than four digits left

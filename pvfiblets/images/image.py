@@ -14,8 +14,6 @@ from .affines import affine as checked
 from .affines import invert_affine
 from .sampling import sample
 
-__all__ = ["Image", "three_axes"]
-
 Array = npt.NDArray[np.float64]
 
 

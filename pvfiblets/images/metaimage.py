@@ -18,8 +18,6 @@ from pvfiblets.errors import FormatError
 from .image import Image
 from .packed_numbers import Packing, data_file, numbers
 
-__all__ = ["header_fields", "read_metaimage"]
-
 TYPES = {
     "MET_CHAR": "i1", "MET_UCHAR": "u1", "MET_SHORT": "i2", "MET_USHORT": "u2", "MET_INT": "i4", "MET_UINT": "u4",
     "MET_LONG": "i4", "MET_ULONG": "u4", "MET_LONG_LONG": "i8", "MET_ULONG_LONG": "u8", "MET_FLOAT": "f4",

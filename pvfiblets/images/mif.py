@@ -20,8 +20,6 @@ from pvfiblets.errors import FormatError
 from .image import Image
 from .packed_numbers import data_file, numbers
 
-__all__ = ["named_files", "read_mif"]
-
 MAGIC = b"mrtrix image"
 LONGEST_HEADER = 1 << 24  # a table of 10,000 gradients is well below
 MOST_AXES = 16

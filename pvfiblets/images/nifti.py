@@ -20,8 +20,6 @@ from pvfiblets.support.nifti_space import affine_of, code_of
 
 from .image import Image
 
-__all__ = ["of_nibabel", "read_nifti"]
-
 LABEL_INTENT = 1002  # NIFTI_INTENT_LABEL
 
 FINE = 0.01  # tolerance of scaled numbers, as a part of a stored step
@@ -34,14 +32,14 @@ def read_nifti(path: Path) -> Image:
     """Read an image of NIfTI or MGH."""
     import nibabel
 
-    with path.open("rb"), _told(path):
+    with path.open("rb"), _damage_as_format_error(path):
         loaded: Any = nibabel.load(path)
         if not hasattr(loaded, "dataobj"):
             raise TypeError(f"as {type(loaded).__name__}, which is no image")
         _check_size(path, loaded.dataobj)
 
     def read() -> npt.NDArray[Any]:
-        with _told(path):
+        with _damage_as_format_error(path):
             return _values(loaded)
 
     return _image(loaded, read)
@@ -77,7 +75,7 @@ def _image(image: Any, read: Callable[[], npt.NDArray[Any]], what: str = "the im
 
 
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
+def _damage_as_format_error(path: Path) -> Iterator[None]:
     """Turn what nibabel raises of a damaged file into a FormatError."""
     from nibabel.filebasedimages import ImageFileError
     from nibabel.freesurfer.mghformat import MGHError

@@ -19,8 +19,6 @@ from pvfiblets.errors import FormatError
 from .image import Image
 from .packed_numbers import Packing, data_file, numbers
 
-__all__ = ["header_fields", "read_nrrd"]
-
 TYPES = {
     name: dtype
     for dtype, names in {

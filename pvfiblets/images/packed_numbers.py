@@ -15,8 +15,6 @@ import numpy.typing as npt
 from pvfiblets.errors import FormatError
 from pvfiblets.support.memory import check_room
 
-__all__ = ["Packing", "data_file", "numbers"]
-
 Packing = Literal["raw", "gzip", "zlib", "bzip2", "ascii"]
 
 PIECE = 1 << 18  # bytes read at a time

@@ -7,8 +7,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["sample"]
-
 PIECE = 1 << 18  # points at a time: the temporary arrays then stay in the cache
 
 Array = npt.NDArray[np.float64]

@@ -10,12 +10,12 @@ import moderngl
 class BlankArrays:
     """Arrays of one texel, zero; no other kind of texture will do for such a sampler."""
 
-    def __init__(self, ctx: Any, said: str) -> None:
+    def __init__(self, ctx: moderngl.Context, said: str) -> None:
         self._ctx = ctx
         self._said = said  # what `buffers` adds to their names
         self._made: dict[str, Any] = {}
 
-    def of(self, name: str, components: int, dtype: str) -> Any:
+    def named(self, name: str, components: int, dtype: str) -> Any:
         """Return the one of a name."""
         if name not in self._made:
             data = bytes(components * int(dtype[1]))

@@ -32,56 +32,29 @@ class Colouring:
 
     Instances never change; the arrays in them must not be changed either. Make another one with
     `dataclasses.replace`.
-
-    Parameters
-    ----------
-    mode : str
-        One of `pvfiblets.colour_modes.MODES`. `values` holds numbers or colours of lines, `source` names the array of
-        points; `lut` is the table. ``'pixel_count'`` is of fiblets with a `pvfiblets.mappers.density.Density`.
-    color : sequence of 3 floats, optional, default (1, 1, 1)
-        RGB between 0 and 1, for ``'solid'``; None for black on a light background and white on a dark one.
-    values : numpy.ndarray, optional
-        (n_streamlines, 3 or 4) uint8 or (n_streamlines,) numbers.
-    source : str or VolumeSource, optional
-        ``'curvature'``, ``'arc_length'``, the name of a stored per-point array, or a volume; of spline tubes
-        ``'radius'``, ``'arc_length'`` or one of their ``values``.
-    lut : numpy.ndarray, optional
-        (k, 4) uint8 RGBA, lowest value first. Greys by default.
-    clim : tuple of 2 floats, optional
-        Values of the table's two ends. Needed by ``'point_scalar'`` and ``'pixel_count'``; by default the finite range
-        of `values`.
-    log_scale : bool, default False
-        Spread the table over the logarithms; `clim` must be positive.
-    nan_color : sequence of 3 or 4 floats, default (0.5, 0.5, 0.5, 1)
-        For NaN.
-    below_color, above_color : sequence of 3 or 4 floats, optional
-        For values outside `clim`; by default the colour of the nearer end.
-    has_alpha : bool, default False
-        Whether some colour of ``'point_rgba'`` or ``'point_packed'`` has an alpha below 1.
-    opacities : numpy.ndarray, optional
-        (n_streamlines,) numbers from 0 to 1; NaN is 0.
-    opacity_source : str, optional
-        Name of a stored per-point array of opacities from 0 to 1; of fiblets. With ``'point_scalar'`` it is `source`:
-        one number at points goes with a picture.
-
-    Raises
-    ------
-    ValueError
-        A field is missing for its mode or has a shape, type or range that cannot be drawn.
     """
 
+    # One of `pvfiblets.colour_modes.MODES`. `values` holds numbers or colours of lines, `source` names the array of
+    # points; `lut` is the table. ``'pixel_count'`` is of fiblets with a `pvfiblets.mappers.density.Density`.
     mode: str = "orientation"
+    # RGB between 0 and 1, for ``'solid'``; None for black on a light background and white on a dark one
     color: tuple[float, ...] | None = (1.0, 1.0, 1.0)
-    values: npt.NDArray[Any] | None = None
+    values: npt.NDArray[Any] | None = None  # (n_streamlines, 3 or 4) uint8 or (n_streamlines,) numbers
+    # ``'curvature'``, ``'arc_length'``, the name of a stored per-point array, or a volume; of spline tubes
+    # ``'radius'``, ``'arc_length'`` or one of their ``values``
     source: str | VolumeSource | None = None
-    lut: npt.NDArray[np.uint8] | None = None
+    lut: npt.NDArray[np.uint8] | None = None  # (k, 4) uint8 RGBA, lowest value first. Greys by default.
+    # Values of the table's two ends. Needed by ``'point_scalar'`` and ``'pixel_count'``; by default the finite range
+    # of `values`.
     clim: tuple[float, float] | None = None
-    log_scale: bool = False
-    nan_color: tuple[float, ...] = (0.5, 0.5, 0.5, 1.0)
-    below_color: tuple[float, ...] | None = None
+    log_scale: bool = False  # Spread the table over the logarithms; `clim` must be positive
+    nan_color: tuple[float, ...] = (0.5, 0.5, 0.5, 1.0)  # For NaN
+    below_color: tuple[float, ...] | None = None  # For values outside `clim`; by default the colour of the nearer end
     above_color: tuple[float, ...] | None = None
-    has_alpha: bool = False
-    opacities: npt.NDArray[Any] | None = None
+    has_alpha: bool = False  # Whether some colour of ``'point_rgba'`` or ``'point_packed'`` has an alpha below 1
+    opacities: npt.NDArray[Any] | None = None  # (n_streamlines,) numbers from 0 to 1; NaN is 0
+    # Name of a stored per-point array of opacities from 0 to 1; of fiblets. With ``'point_scalar'`` it is `source`:
+    # one number at points goes with a picture.
     opacity_source: str | None = None
 
     def __post_init__(self) -> None:

@@ -15,6 +15,8 @@ from pvfiblets.mappers.shader_effects import ShaderEffect
 from pvfiblets.mappers.shifted_cameras import draws_sample
 
 if TYPE_CHECKING:
+    import moderngl
+
     from pvfiblets.mappers.shader_effects import Draw
 
 TONES = ("log", "sqrt", "linear")  # functions from the number of lines to brightness
@@ -58,7 +60,7 @@ class Density(ShaderEffect):
         """Thin lines, if wanted."""
         return {"line_width": 1.0, "radius": None, "across": False} if self.thin else {}
 
-    def make(self, ctx: Any) -> Sums:
+    def make(self, ctx: moderngl.Context) -> Sums:
         """Make room for a window's sums."""
         return Sums(ctx)
 

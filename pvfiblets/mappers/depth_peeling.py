@@ -9,11 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pvfiblets.engine.fiblets.gather.depth_peeling import MOST_LAYERS
 from pvfiblets.mappers.blank_arrays import BlankArrays
 from pvfiblets.mappers.shader_effects import ShaderEffect
+
+if TYPE_CHECKING:
+    import moderngl
 
 _BESIDE = {
     "point_value": "layers_value",
@@ -28,7 +31,7 @@ _EMPTY = {"depth": (1, "u4"), "ids": (2, "u4"), "position": (2, "f4"), "across":
 class _Held:
     """State of one window: the engine that has layers, or empty textures in their place."""
 
-    def __init__(self, ctx: Any) -> None:
+    def __init__(self, ctx: moderngl.Context) -> None:
         self._engine: Any = None
         self._empty = BlankArrays(ctx, "no layer")
         self.count = 1
@@ -46,7 +49,7 @@ class _Held:
 
     def blank(self, name: str) -> Any:
         """Return what a sampler of these may look at."""
-        return self._empty.of(name, *_EMPTY[name])
+        return self._empty.named(name, *_EMPTY[name])
 
     def explain(self) -> dict[str, list[dict[str, Any]]]:
         """Return ``passes`` (none) and ``buffers``, name and bytes."""
@@ -77,7 +80,7 @@ class Layers(ShaderEffect):
             raise ValueError(f"{self.count!r} layers are not possible; give a whole number from 2 to {MOST_LAYERS}")
         object.__setattr__(self, "count", int(self.count))
 
-    def make(self, ctx: Any) -> _Held:
+    def make(self, ctx: moderngl.Context) -> _Held:
         """Make room for a window's textures."""
         return _Held(ctx)
 

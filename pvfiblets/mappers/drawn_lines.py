@@ -87,7 +87,7 @@ def fiblet_lines(
     flags = None if filtering is None or filtering.points is None else point_flags(fiblets, filtering.points, ids)
     if ends:
         return lines.ends(flags)
-    return lines if flags is None else lines.kept(flags)
+    return lines if flags is None else lines.with_points(flags)
 
 
 def _fiblet_values(lines: LineData, decoded: Streamlines, source: Any, *, colours: bool) -> npt.NDArray[Any]:
@@ -193,9 +193,9 @@ def halo_lines(
         values = np.asarray(drawn.values[look.filter_by])[rows]
         kept = (values >= look.low) & (values <= look.high)
     if filtering is None:
-        return lines.kept(kept)
+        return lines.with_points(kept)
     if not hasattr(drawn, "offsets"):
-        return lines.kept(kept & filtering[rows])
+        return lines.with_points(kept & filtering[rows])
     goes_on = np.zeros(len(points), bool)
     goes_on[drawn.segment_starts[filtering]] = True
     return lines.with_segments(goes_on[rows] & kept & np.append(kept[1:], False))

@@ -60,6 +60,7 @@ from pvfiblets.mappers.windows import (
 )
 
 if TYPE_CHECKING:
+    import moderngl
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
     from pvfiblets.mappers.line_data import LineData
@@ -343,7 +344,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             smoother.note(self, buffer, narrower, rectangle)
         lens = lenses.get(renderer.GetAddressAsString(""))
         if lens is not None and actor.HasTranslucentPolygonalGeometry():
-            lens[self.GetAddressAsString("")] = self._seen_through(buffer)
+            lens[self.GetAddressAsString("")] = self._faint_light(buffer)
         if is_shifted(renderer.GetActiveCamera()) or style.exact:  # one sample of a pixel is not what users point at
             return
         address = renderer.GetAddressAsString("")
@@ -369,7 +370,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             style = replace(style, edges=True, exact=sample)
         return view, style
 
-    def _seen_through(self, buffer: Any) -> Any:
+    def _faint_light(self, buffer: Any) -> Any:
         """Return what depth of field is to know of a G-buffer of something translucent."""
         from pvfiblets.engine.effects.picture import SeenThrough
 
@@ -430,7 +431,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             slot.renderer = self._make(context.ctx)
         return slot.renderer
 
-    def _make(self, ctx: Any, **more: Any) -> Any:
+    def _make(self, ctx: moderngl.Context, **more: Any) -> Any:
         """Return a renderer of the engine, made with all options, and more."""
         return self._factory(ctx, self._drawn, **{**self._options.changed(), **self._made_with, **more})
 

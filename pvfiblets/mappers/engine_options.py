@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pvfiblets.codec.files.stored_parts import in_parts
 from pvfiblets.engine.gl.capabilities import AUTO, check_choices
+
+if TYPE_CHECKING:
+    import moderngl
+
+    from pvfiblets.codec.fibletset import FibletSet
 
 
 @dataclass(frozen=True)
@@ -35,36 +40,22 @@ class Options:
 
 @dataclass(frozen=True)
 class EngineOptions(Options):
-    """Options of drawing that do not change the picture.
+    """Options of drawing that do not change the picture."""
 
-    Parameters
-    ----------
-    pipeline : str, default 'auto'
-        How fiblets become pixels: ``'auto'`` takes the fastest that the window's OpenGL has; see
-        `pvfiblets.engine.gl.capabilities.pipelines`.
-    culling : {'auto', 'two-phase', 'coverage', 'none', None}, default 'auto'
-        How fiblets behind others are found out; ``'auto'`` is two-phase where that is measured to be faster.
-    fit : {None, 'sample', 'stream'}
-        What to do where memory does not suffice: refuse, draw a share of the streamlines, or all of them part by part.
-    cluster : distributed.Client, optional
-        Has its workers draw, part by part where memory does not suffice.
-
-    Raises
-    ------
-    ValueError
-        A value is unknown.
-    """
-
+    # How fiblets become pixels: ``'auto'`` takes the fastest that the window's OpenGL has; see
+    # `pvfiblets.engine.gl.capabilities.pipelines`
     pipeline: str = AUTO
+    # How fiblets behind others are found out; ``'auto'`` is two-phase where that is measured to be faster
     culling: str | None = AUTO
+    # What to do where memory does not suffice: refuse, draw a share of the streamlines, or all of them part by part
     fit: str | None = None
-    cluster: Any = None
+    cluster: Any = None  # Has its workers draw, part by part where memory does not suffice
 
     def _check(self) -> None:
         check_choices(pipeline=self.pipeline, culling=self.culling, fit=self.fit)
 
 
-def engine_renderer(ctx: Any, fiblets: Any, **options: Any) -> Any:
+def engine_renderer(ctx: moderngl.Context, fiblets: FibletSet, **options: Any) -> Any:
     """Make the engine's renderer; the default ``renderer_factory``."""
     if options.get("cluster") is not None:
         from pvfiblets.engine.fiblets.parts.cluster_renderer import ClusterRenderer

@@ -22,6 +22,7 @@ from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
 from pvfiblets.query.selection.point_flags import Sampling
 
 if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.fiblets.sample_layers import OtherSamples, SampledLines
 
 _OVER = object()
@@ -66,7 +67,7 @@ class FibletMapper(FilteredMapper[EngineOptions]):
 
     def __init__(
         self,
-        fiblets: Any = None,
+        fiblets: FibletSet | None = None,
         *,
         colouring: Colouring | None = None,
         line_width: float | None = None,
@@ -95,7 +96,7 @@ class FibletMapper(FilteredMapper[EngineOptions]):
         """The drawn `FibletSet`; None without a connection, or before its first use."""
         return self._drawn
 
-    def set_fiblets(self, fiblets: Any) -> None:
+    def set_fiblets(self, fiblets: FibletSet) -> None:
         """Draw other fiblets from the next frame on, unless the colouring is for another number of them."""
         self._put(fiblets)
 

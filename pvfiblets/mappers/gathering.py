@@ -19,6 +19,8 @@ from pvfiblets.mappers.scene_state import scene_state
 from pvfiblets.mappers.uniforms import colour_uniforms
 
 if TYPE_CHECKING:
+    import moderngl
+
     from pvfiblets.mappers.shader_effects import Draw
 
 _SHOULDER = np.array([-1.0, 1.0, 1.0]) / np.sqrt(3.0)
@@ -49,7 +51,7 @@ def paint_of(draw: Draw, *, lit: bool, opacity: float | None = None) -> Paint:
 class Sums:
     """An effect's state in one window: the engine that has sums, or empty textures."""
 
-    def __init__(self, ctx: Any) -> None:
+    def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx  # of the window
         self._engine: Any = None
         self._outside: OutsideDepth | None = None
@@ -78,7 +80,7 @@ class Sums:
         found = {}
         for name, dtype, words in (("fibletSumWords", "u4", True), ("fibletSumFloats", "f4", False)):
             here = self.held is not None and self.held.words is words
-            found[name] = self.held.texture if here and self.held is not None else self._blank.of(name, 1, dtype)
+            found[name] = self.held.texture if here and self.held is not None else self._blank.named(name, 1, dtype)
         return found
 
     def _depth(self, draw: Draw) -> Any:

@@ -24,12 +24,12 @@ from pvfiblets.mappers.shader_effects import Draw, ShaderEffect
 from pvfiblets.mappers.shading import background
 
 if TYPE_CHECKING:
+    import moderngl
+
     from pvfiblets.engine.halos import HaloDrawStyle
     from pvfiblets.halos import HaloPoints, HaloStyle
 
     Drawn = HaloLines | HaloPoints
-
-__all__ = ["HaloMapper", "HaloOptions", "Strips", "halo_renderer"]
 
 Colour = tuple[float, float, float]
 
@@ -39,27 +39,16 @@ BLACK: Colour = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class HaloOptions(Options):
-    """Options of drawing lines and points with halos that do not change the picture.
+    """Options of drawing lines and points with halos that do not change the picture."""
 
-    Parameters
-    ----------
-    culling : {'two-phase', 'none', None}
-        How those behind others are found out.
-
-    Raises
-    ------
-    ValueError
-        The value is unknown.
-    """
-
-    culling: str | None = "two-phase"
+    culling: str | None = "two-phase"  # How those behind others are found out
 
     def _check(self) -> None:
         if self.culling not in (None, "two-phase"):
             raise ValueError(f"culling is {self.culling!r}; use 'two-phase' or None")
 
 
-def halo_renderer(ctx: Any, drawn: Any, **options: Any) -> Any:
+def halo_renderer(ctx: moderngl.Context, drawn: Any, **options: Any) -> Any:
     """Make the engine's renderer of lines and points with halos; the default ``renderer_factory``."""
     from pvfiblets.engine.halos import HaloRenderer
 
@@ -95,28 +84,6 @@ class Strips(ShaderEffect):
 class HaloMapper(FilteredMapper[HaloOptions]):
     """Mapper that draws `HaloLines` or `HaloPoints` through VTK's own passes, clipping planes and selection.
 
-    Parameters
-    ----------
-    drawn : HaloLines or HaloPoints, optional
-        What to draw. Without it, the lines of the PolyData that ``SetInputConnection`` or ``SetInputData`` connects, or
-        its points, if it has no lines.
-    look : HaloStyle, optional
-        Widths, depths and other settings. By default the widths of connected data follow the distance between
-        its lines.
-    colouring : Colouring, optional
-        Of lines and points. By default they are black, and connected data are coloured as by any ``vtkMapper``:
-        by its active scalars, or in the colour of the actor's property.
-    halo_color : tuple of 3 floats, optional
-        RGB between 0 and 1; None for the renderer's background. When left out, halos are white; around
-        connected lines they have the background's colour.
-    options : HaloOptions, optional
-        What does not show.
-    renderer_factory : callable, optional
-        Takes a moderngl context, the data, and as keywords the options that differ from the defaults; returns a
-        renderer as of `pvfiblets.engine.halos`.
-
-    Notes
-    -----
     Exceptions while drawing wait for `raise_pending`; GL objects are given back as `EngineMapper` says.
 
     Source: Everts, Bekker, Roerdink and Isenberg, "Depth-dependent halos" (2009), section 3.
@@ -129,12 +96,22 @@ class HaloMapper(FilteredMapper[HaloOptions]):
 
     def __init__(
         self,
+        # What to draw. Without it, the lines of the PolyData that ``SetInputConnection`` or ``SetInputData``
+        # connects, or its points, if it has no lines.
         drawn: Drawn | None = None,
+        # Widths, depths and other settings. By default the widths of connected data follow the distance between its
+        # lines.
         look: HaloStyle | None = None,
         *,
+        # Of lines and points. By default they are black, and connected data are coloured as by any ``vtkMapper``: by
+        # its active scalars, or in the colour of the actor's property.
         colouring: Colouring | None = None,
+        # RGB between 0 and 1; None for the renderer's background. When left out, halos are white; around connected
+        # lines they have the background's colour.
         halo_color: Colour | Literal["usual"] | None = "usual",
-        options: HaloOptions | None = None,
+        options: HaloOptions | None = None,  # What does not show
+        # Takes a moderngl context, the data, and as keywords the options that differ from the defaults; returns a
+        # renderer as of `pvfiblets.engine.halos`
         renderer_factory: Callable[..., Any] = halo_renderer,
     ) -> None:
         if drawn is not None and look is None:

@@ -17,7 +17,7 @@ from pvfiblets.mappers.windows import MAX_ROW
 class _Bits:
     """The texture of one window."""
 
-    def __init__(self, ctx: Any) -> None:
+    def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
         self._source: Any = None
         self.texture: Any = None
@@ -73,7 +73,7 @@ class Highlight(ShaderEffect):
         if not 0.0 <= self.dim <= 1.0:
             raise ValueError(f"dim is {self.dim}; give a number from 0 to 1")
 
-    def make(self, ctx: Any) -> _Bits:
+    def make(self, ctx: moderngl.Context) -> _Bits:
         """Make room for a window's texture."""
         return _Bits(ctx)
 

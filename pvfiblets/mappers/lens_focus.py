@@ -14,8 +14,6 @@ from pvfiblets.engine.effects.projection import Projection
 from pvfiblets.engine.effects.tone import is_number
 from pvfiblets.mappers.scene import in_motion, pixel_scale, samples_per_pixel, to_array
 
-__all__ = ["FOLLOWED", "DepthOfField", "Focusing", "lens_of"]
-
 FOLLOWED = ("cursor", "center")  # places in the picture whose depth may be the one in focus
 
 APERTURE = 0.06  # default diameter of the lens, as a share of the visible height at the distance in focus

@@ -16,8 +16,6 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
-__all__ = ["COLOURS", "RADIUS", "SIDES", "STEPS", "STREAMLINE", "LineData", "segment_ids", "tube_surface"]
-
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Flags = npt.NDArray[np.bool_]
@@ -61,7 +59,7 @@ class LineData:
         lengths = np.linalg.norm(sums, axis=1, keepdims=True)
         return np.divide(sums, lengths, out=np.zeros_like(sums), where=lengths > 0.0)
 
-    def kept(self, points: Flags) -> LineData:
+    def with_points(self, points: Flags) -> LineData:
         """Return the segments with both points kept, and kept lines of one point."""
         if points.all():
             return self

@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.mappers.shader_effects import Draw, MapperEffect, ShaderEffect
+
+if TYPE_CHECKING:
+    import moderngl
 
 
 def thickness_of(effects: Iterable[MapperEffect]) -> float:
@@ -36,7 +39,7 @@ def normals_to_view(directions: npt.NDArray[np.float64]) -> npt.NDArray[np.float
 class _Blank:
     """A texel that says of every pixel that it lies in the middle of its line."""
 
-    def __init__(self, ctx: Any) -> None:
+    def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
         self._texture: Any = None
 
@@ -75,7 +78,7 @@ class TubeShading(ShaderEffect):
         """Requests to the engine."""
         return {"across": True}
 
-    def make(self, ctx: Any) -> _Blank:
+    def make(self, ctx: moderngl.Context) -> _Blank:
         """Make a substitute for the engine's texture where there are no wide lines."""
         return _Blank(ctx)
 

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["Overlay"]
-
 LAST = ("vtkSSAOPass", "vtkEDLShading")  # passes that leave the depth of their result in VTK's framebuffer
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,9 @@ from vtkmodules.vtkCommonCore import vtkFloatArray
 
 from pvfiblets.mappers.shifted_cameras import with_exact_depths
 from pvfiblets.mappers.windows import WindowContext, contexts_with
+
+if TYPE_CHECKING:
+    import moderngl
 
 EMPTY = 0xFFFFFFFF
 DEPTH_ERROR = 3e-7  # window depth: as much as a depth buffer of 24 bits and the shader's float32 round
@@ -233,7 +236,7 @@ def _hidden(shown: Shown, pixels: npt.NDArray[np.float64], depths: npt.NDArray[n
     return hidden
 
 
-def _texels(ctx: Any, texture: Any, area: tuple[int, int, int, int]) -> npt.NDArray[Any]:
+def _texels(ctx: moderngl.Context, texture: Any, area: tuple[int, int, int, int]) -> npt.NDArray[Any]:
     """Read a rectangle of a texture of integers or floats as (height, width, components)."""
     framebuffer = ctx.framebuffer([texture])
     try:

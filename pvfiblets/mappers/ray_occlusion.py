@@ -12,6 +12,8 @@ from pvfiblets.mappers.shader_effects import ShaderEffect
 from pvfiblets.mappers.shading import extent, positive, share
 
 if TYPE_CHECKING:
+    import moderngl
+
     from pvfiblets.engine.volumes.ray_occlusion import RayOcclusionPass
     from pvfiblets.mappers.shader_effects import Draw
 
@@ -53,7 +55,7 @@ class RayOcclusion(ShaderEffect):
         object.__setattr__(self, "smooth", bool(self.smooth))
         object.__setattr__(self, "strength", share(self.strength, f"strength {_WHAT}"))
 
-    def make(self, ctx: Any) -> RayOcclusionPass:
+    def make(self, ctx: moderngl.Context) -> RayOcclusionPass:
         """Make the pass."""
         from pvfiblets.engine.volumes.ray_occlusion import RayOcclusionPass
 

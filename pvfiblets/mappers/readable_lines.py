@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from pvfiblets.mappers.connection import Connection
     from pvfiblets.mappers.engine_mapper import EngineMapper
 
-__all__ = ["MOST_POINTS", "LineReading", "readable", "reading_of"]
-
 MOST_POINTS = 2_000_000  # most points for exporters and pickers: some 60 MB, or 100 MB as a .gltf or .obj file
 
 _CELLS = 1  # vtkDataObject.FIELD_ASSOCIATION_CELLS; 0 are points

@@ -12,11 +12,12 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 if TYPE_CHECKING:
+    import moderngl
+
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.view import Style
     from pvfiblets.mappers.scene import Frame
     from pvfiblets.mappers.windows import Slot
-
-__all__ = ["Draw", "GpuResource", "MapperEffect", "ShaderEffect", "prepare_effects", "set_effect_uniforms", "styled"]
 
 AnyStyle = TypeVar("AnyStyle", bound="Style")
 
@@ -25,14 +26,14 @@ AnyStyle = TypeVar("AnyStyle", bound="Style")
 class Draw:
     """One draw of a mapper, as its effects see it."""
 
-    ctx: Any  # of the window; current
+    ctx: moderngl.Context  # of the window; current
     engine: Any  # the engine's renderer
     buffer: Any  # its G-buffer, up to date
     frame: Frame  # viewport and matrices
     view: Any  # as given to the engine
     style: Any
     renderer: Any
-    fiblets: Any  # the drawn data
+    fiblets: FibletSet  # the drawn data
     actor: Any  # of the mapper
     colouring: Any = None  # where its colours come from
     textures: Mapping[str, Any] = field(default_factory=dict)  # of the colours, by the names of their samplers
@@ -59,7 +60,7 @@ class MapperEffect(Protocol):
         """Fields of the engine's ``Style`` that it sets."""
         ...
 
-    def make(self, ctx: Any) -> GpuResource | None:
+    def make(self, ctx: moderngl.Context) -> GpuResource | None:
         """Make its GPU resources for a window; another effect of the same name and class reuses them."""
         ...
 
@@ -96,7 +97,7 @@ class ShaderEffect:
         """Whether it needs only the G-buffer's pixel."""
         return type(self).prepare is ShaderEffect.prepare
 
-    def make(self, ctx: Any) -> Any:  # noqa: ARG002 - as of all effects
+    def make(self, ctx: moderngl.Context) -> Any:  # noqa: ARG002 - as of all effects
         """Keep nothing on the GPU."""
         return None
 

@@ -20,9 +20,9 @@ from pvfiblets.mappers.shader_effects import Draw, ShaderEffect
 from pvfiblets.mappers.spacing import line_spacing_of
 
 if TYPE_CHECKING:
-    from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, OutlinePass, Projection
+    import moderngl
 
-__all__ = ["AmbientOcclusion", "DepthCue", "Halos", "Illuminated", "Ink", "Silhouette"]
+    from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, OutlinePass, Projection
 
 Colour = tuple[float, float, float]
 
@@ -98,7 +98,7 @@ class AmbientOcclusion(ShaderEffect):
         object.__setattr__(self, "samples", int(self.samples))
         object.__setattr__(self, "strength", share(self.strength, "strength of ambient occlusion"))
 
-    def make(self, ctx: Any) -> AmbientOcclusionPass:
+    def make(self, ctx: moderngl.Context) -> AmbientOcclusionPass:
         """Make the passes."""
         from pvfiblets.engine.effects import AmbientOcclusionPass
 
@@ -111,7 +111,7 @@ class AmbientOcclusion(ShaderEffect):
         surface = draw.buffer.relief == "normal"
         texture = kept.draw(
             draw.buffer,
-            lens_of(draw),
+            _lens_of(draw),
             directions,
             radius=radius,
             samples=self.samples,
@@ -124,8 +124,10 @@ class AmbientOcclusion(ShaderEffect):
         """Return the radius in mm."""
         if self.radius is not None:
             return self.radius
-        most, spacing = MOST_OCCLUSION * extent(draw), spacing_in(draw)
-        return most if spacing is None else min(max(OCCLUSION_RADIUS * spacing, LEAST_OCCLUSION * pixel_in(draw)), most)
+        most, spacing = MOST_OCCLUSION * extent(draw), _spacing_in(draw)
+        if spacing is None:
+            return most
+        return min(max(OCCLUSION_RADIUS * spacing, LEAST_OCCLUSION * _pixel_in(draw)), most)
 
 
 @dataclass(frozen=True)
@@ -183,7 +185,7 @@ class Halos(ShaderEffect):
         if self.color is not None:
             object.__setattr__(self, "color", _colour(self.color, "color of halos"))
 
-    def make(self, ctx: Any) -> HaloPass:
+    def make(self, ctx: moderngl.Context) -> HaloPass:
         """Make the passes."""
         from pvfiblets.engine.effects import HaloPass
 
@@ -193,7 +195,7 @@ class Halos(ShaderEffect):
         """Run them."""
         width, depth = self.sizes(draw)
         nearest = distances(draw)[0]
-        lens, scale = lens_of(draw), _pixel_scale(draw)
+        lens, scale = _lens_of(draw), _pixel_scale(draw)
         texture = kept.draw(draw.buffer, lens, width=width, depth=depth, nearest=nearest, pixel_scale=scale)
         return {"fibletHaloMap": texture}
 
@@ -201,7 +203,7 @@ class Halos(ShaderEffect):
         """Return width and depth in mm."""
         width = self.width
         if width is None:
-            pixel, spacing = pixel_in(draw), spacing_in(draw)
+            pixel, spacing = _pixel_in(draw), _spacing_in(draw)
             width = min(max(HALO_WIDTH * (spacing or 0.0), LEAST_HALO * pixel), MOST_HALO * pixel)
         return width, HALO_DEPTH * width if self.depth is None else self.depth
 
@@ -210,7 +212,7 @@ class Halos(ShaderEffect):
         lower, upper = background(draw.renderer) if self.color is None else (self.color, self.color)
         program.SetUniform3f("fibletHaloLower", lower)
         program.SetUniform3f("fibletHaloUpper", upper)
-        widen(program, draw)
+        _widen(program, draw)
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,7 +238,7 @@ class Silhouette(ShaderEffect):
             raise ValueError(f"width of a silhouette is {self.width!r}; give pixels from 1 to {MAX_OUTLINE:g}")
         object.__setattr__(self, "width", float(self.width))
 
-    def make(self, ctx: Any) -> OutlinePass:
+    def make(self, ctx: moderngl.Context) -> OutlinePass:
         """Make the passes."""
         from pvfiblets.engine.effects import OutlinePass
 
@@ -254,10 +256,10 @@ class Silhouette(ShaderEffect):
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
         """Set the colour, and widen the rectangle in which anything can be."""
         program.SetUniform3f("fibletOutlineColour", self.color)
-        widen(program, draw)
+        _widen(program, draw)
 
 
-def lens_of(draw: Draw) -> Projection:
+def _lens_of(draw: Draw) -> Projection:
     """Return what effects must know of a draw's camera."""
     from pvfiblets.engine.effects import Projection
 
@@ -271,7 +273,7 @@ def extent(draw: Draw) -> float:
     return diagonal if math.isfinite(diagonal) and diagonal > 0.0 else 1.0
 
 
-def spacing_in(draw: Draw) -> float | None:
+def _spacing_in(draw: Draw) -> float | None:
     """Return the distance between lines in mm of the world; None where it is not known."""
     spacing = line_spacing_of(draw.fiblets)
     if spacing is None:
@@ -280,9 +282,9 @@ def spacing_in(draw: Draw) -> float | None:
     return spacing * extent(draw) / (float(np.linalg.norm(bounds[1::2] - bounds[::2])) or 1.0)
 
 
-def pixel_in(draw: Draw) -> float:
+def _pixel_in(draw: Draw) -> float:
     """Return the mm of a pixel of the window in the middle of the data."""
-    return _pixel_scale(draw) / lens_of(draw).pixels_per_mm(sum(distances(draw)) / 2.0)
+    return _pixel_scale(draw) / _lens_of(draw).pixels_per_mm(sum(distances(draw)) / 2.0)
 
 
 def distances(draw: Draw) -> tuple[float, float]:
@@ -311,7 +313,7 @@ def ink_on(renderer: Any) -> Colour:
     return (0.0, 0.0, 0.0) if renderer is None or is_light(renderer) else (1.0, 1.0, 1.0)
 
 
-def widen(program: Any, draw: Draw) -> None:
+def _widen(program: Any, draw: Draw) -> None:
     """Extend the resolve to pixels as far from the lines as any halo or outline reaches."""
     from pvfiblets.engine.effects.halos import WIDEST
 
@@ -334,6 +336,7 @@ def _colour(value: Any, name: str) -> Colour:
 
 
 def positive(value: Any, name: str, unit: str) -> float:
+    """Return a finite number above 0."""
     number = float(value)
     if not (math.isfinite(number) and number > 0.0):
         raise ValueError(f"{name} is {value!r}; give {unit}, a finite number above 0")
@@ -341,6 +344,7 @@ def positive(value: Any, name: str, unit: str) -> float:
 
 
 def share(value: Any, name: str) -> float:
+    """Return a number from 0 to 1."""
     number = float(value)
     if not 0.0 <= number <= 1.0:
         raise ValueError(f"{name} is {value!r}; give a number from 0 to 1")

@@ -17,6 +17,8 @@ from pvfiblets.mappers.gathering import Sums, paint_of
 from pvfiblets.mappers.shader_effects import ShaderEffect
 
 if TYPE_CHECKING:
+    import moderngl
+
     from pvfiblets.mappers.shader_effects import Draw
 
 
@@ -33,7 +35,7 @@ class Slices(ShaderEffect):
     )
     count: ClassVar[int] = SLICES + 1
 
-    def make(self, ctx: Any) -> Sums:
+    def make(self, ctx: moderngl.Context) -> Sums:
         """Make room for a window's sums."""
         return Sums(ctx)
 

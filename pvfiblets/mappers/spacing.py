@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import weakref
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-__all__ = ["line_spacing_of"]
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
 
 MOST_STREAMLINES = 1000
 SAMPLES = 400
@@ -32,7 +33,7 @@ def line_spacing_of(drawn: Any) -> float | None:
     return spacing
 
 
-def _measured(fiblets: Any) -> float | None:
+def _measured(fiblets: FibletSet) -> float | None:
     from pvfiblets.halos import HaloLines
     from pvfiblets.halos.spacing import line_spacing
 

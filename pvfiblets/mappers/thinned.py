@@ -8,15 +8,18 @@ coloured and cut goes by the numbers of the whole set's streamlines.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.mappers.scene import wanted_share
 
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+
 LEAST_FIBLETS = 20_000  # smaller sets are never thinned: they are fast, and each of their lines may count
 
 
-def thinned_engine(context: Any, slot: Any, fiblets: Any, filtering: Any, make: Callable[..., Any]) -> Any:
+def thinned_engine(context: Any, slot: Any, fiblets: FibletSet, filtering: Any, make: Callable[..., Any]) -> Any:
     """Return the engine that draws the share of streamlines that the window requests."""
     if fiblets.n_fiblets < LEAST_FIBLETS or hasattr(slot.renderer, "patience"):
         return slot.renderer

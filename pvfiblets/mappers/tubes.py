@@ -22,37 +22,20 @@ from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.scene import Frame
 
 if TYPE_CHECKING:
+    import moderngl
+
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
 
 @dataclass(frozen=True)
 class TubeOptions(Options):
-    """Options of casting rays at spline tubes.
+    """Options of casting rays at spline tubes."""
 
-    Parameters
-    ----------
-    silhouettes : {'auto', 'rectangles', 'boxes', 'pulled-boxes'}
-        What covers the pixels whose rays are tried.
-    solver : {'auto', 'bisection', 'illinois', 'itp', 'newton'}
-        How the first point of a tube on a ray is searched.
-    iterations : int, optional
-        Steps of one search at most; the solver's own number by default.
-    min_width : float, default 1.0
-        Pixels of the window that a tube takes at least, 0 to 64, however thin and far it is.
-    culling : {'two-phase', 'none', None}
-        How segments behind others are found out.
-
-    Raises
-    ------
-    ValueError
-        A value is unknown.
-    """
-
-    silhouettes: str = "auto"
-    solver: str = "auto"
-    iterations: int | None = None
-    min_width: float = 1.0
-    culling: str | None = "two-phase"
+    silhouettes: str = "auto"  # What covers the pixels whose rays are tried
+    solver: str = "auto"  # How the first point of a tube on a ray is searched
+    iterations: int | None = None  # Steps of one search at most; the solver's own number by default
+    min_width: float = 1.0  # Pixels of the window that a tube takes at least, 0 to 64, however thin and far it is
+    culling: str | None = "two-phase"  # How segments behind others are found out
 
     # It is a part of the style: another one is drawn by the same renderer.
     NOT_MADE_WITH: ClassVar[frozenset[str]] = frozenset({"min_width"})
@@ -61,7 +44,7 @@ class TubeOptions(Options):
         check_choices(self.silhouettes, self.solver, self.iterations, self.min_width, self.culling)
 
 
-def tube_renderer(ctx: Any, tubes: Any, **options: Any) -> Any:
+def tube_renderer(ctx: moderngl.Context, tubes: Any, **options: Any) -> Any:
     """Make the engine's renderer of spline tubes; the default ``renderer_factory``."""
     from pvfiblets.engine.tubes import TubeRenderer
 
@@ -71,25 +54,6 @@ def tube_renderer(ctx: Any, tubes: Any, **options: Any) -> Any:
 class TubeMapper(FilteredMapper[TubeOptions]):
     """Mapper that draws `SplineTubes` through VTK's own lights, passes, clipping planes and selection.
 
-    Parameters
-    ----------
-    tubes : SplineTubes, optional
-        What to draw. Without it, tubes around the lines of the PolyData that ``SetInputConnection`` or
-        ``SetInputData`` connects.
-    colouring : Colouring, optional
-        By default tubes are white, and connected data are coloured as by any ``vtkMapper``: by their active
-        scalars, or in the colour of the actor's property.
-    shape : mapping, optional
-        Arguments of `pvfiblets.tubes.build.as_spline_tubes` for connected data, such as ``radius``: a number (mm),
-        or the name of an array.
-    options : TubeOptions, optional
-        How rays are cast.
-    renderer_factory : callable, optional
-        Takes a moderngl context, the tubes, and as keywords those options that are not the defaults; returns a
-        renderer as of `pvfiblets.engine.tubes`.
-
-    Notes
-    -----
     Exceptions while drawing wait for `raise_pending`; GL objects are given back as `EngineMapper` says.
 
     Source: Russig, Gumhold and Salm, "GPU-based raycasting of Hermite spline tubes" (2020), section 3.2.
@@ -102,11 +66,19 @@ class TubeMapper(FilteredMapper[TubeOptions]):
 
     def __init__(
         self,
+        # What to draw. Without it, tubes around the lines of the PolyData that ``SetInputConnection`` or
+        # ``SetInputData`` connects.
         tubes: SplineTubes | None = None,
         *,
+        # By default tubes are white, and connected data are coloured as by any ``vtkMapper``: by their active
+        # scalars, or in the colour of the actor's property
         colouring: Colouring | None = None,
+        # Arguments of `pvfiblets.tubes.build.as_spline_tubes` for connected data, such as ``radius``: a number (mm),
+        # or the name of an array
         shape: Mapping[str, Any] | None = None,
-        options: TubeOptions | None = None,
+        options: TubeOptions | None = None,  # How rays are cast
+        # Takes a moderngl context, the tubes, and as keywords those options that are not the defaults; returns a
+        # renderer as of `pvfiblets.engine.tubes`
         renderer_factory: Callable[..., Any] = tube_renderer,
     ) -> None:
         self._shape = dict(shape or {})

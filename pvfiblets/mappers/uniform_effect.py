@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
+    import moderngl
+
     from pvfiblets.mappers.shader_effects import Draw
 
 
@@ -24,7 +26,7 @@ class UniformEffect:
         """The piece."""
         return frozenset({self.piece})
 
-    def make(self, ctx: Any) -> None:  # noqa: ARG002 - as of all effects
+    def make(self, ctx: moderngl.Context) -> None:  # noqa: ARG002 - as of all effects
         """Keep nothing on the GPU."""
         return
 

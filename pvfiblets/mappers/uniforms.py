@@ -5,12 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import moderngl
+
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.mappers.colouring import Colouring
     from pvfiblets.mappers.scene import Frame
     from pvfiblets.mappers.windows import Slot
 
 
-def resolve_textures(ctx: Any, slot: Slot, buffer: Any, colouring: Colouring) -> dict[str, Any]:
+def resolve_textures(ctx: moderngl.Context, slot: Slot, buffer: Any, colouring: Colouring) -> dict[str, Any]:
     """Return the textures of the G-buffer and of the colours by the names of their samplers."""
     textures = {"fibletDepthMap": buffer.depth, "fibletIdMap": buffer.ids}
     lists: dict[str, Any] = {}
@@ -31,7 +34,7 @@ def resolve_textures(ctx: Any, slot: Slot, buffer: Any, colouring: Colouring) ->
     return textures
 
 
-def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring: Colouring) -> None:
+def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: FibletSet, colouring: Colouring) -> None:
     """Set place, camera and colours of a draw; the ``vtkShaderProgram`` is bound."""
     x, y, width, height = frame.viewport
     program.SetUniform2i("fibletOrigin", (x, y))
@@ -52,7 +55,7 @@ def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring
             program.SetUniformf(name, value)
 
 
-def colour_uniforms(colouring: Colouring, fiblets: Any) -> dict[str, int | float | tuple[float, ...]]:
+def colour_uniforms(colouring: Colouring, fiblets: FibletSet) -> dict[str, int | float | tuple[float, ...]]:
     """Return the uniforms of ``shaders/colour`` by their names."""
     if not colouring.maps_on_gpu or colouring.lut is None:
         return {} if colouring.kind.numbers or colouring.color is None else {"colour_solid": colouring.color}

@@ -27,6 +27,8 @@ from pvfiblets.mappers.volume_lamps import OwnLight, shading_of
 from pvfiblets.mappers.windows import Slot, WindowContext
 
 if TYPE_CHECKING:
+    import moderngl
+
     from pvfiblets.engine.volumes import VolumeStyle
     from pvfiblets.volumes import RaycastVolume
     from pvfiblets.volumes.interactive_quality import InteractiveQuality
@@ -35,7 +37,7 @@ if TYPE_CHECKING:
 _LIGHT = "light"  # what the engine has in the place of a number at every point
 
 
-def volume_renderer(ctx: Any, volume: Any, **options: Any) -> Any:
+def volume_renderer(ctx: moderngl.Context, volume: Any, **options: Any) -> Any:
     """Make the engine's renderer of a volume; the default ``renderer_factory``."""
     from pvfiblets.engine.volumes import VolumeRenderer
 
@@ -44,52 +46,18 @@ def volume_renderer(ctx: Any, volume: Any, **options: Any) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class RayHit:
-    """The appearance of a volume in a pixel.
+    """The appearance of a volume in a pixel."""
 
-    Attributes
-    ----------
-    voxel : tuple of 3 ints
-        The nearest voxel.
-    position : numpy.ndarray
-        ``(3,)`` float64 mm, in the data's coordinates: where the ray meets the surface, where its first light comes
-        from, or where its peak is.
-    value : float
-        Of the surface or the peak; of light that of the voxel.
-    """
-
-    voxel: tuple[int, int, int]
+    voxel: tuple[int, int, int]  # The nearest voxel
+    # ``(3,)`` float64 mm, in the data's coordinates: where the ray meets the surface, where its first light comes
+    # from, or where its peak is
     position: npt.NDArray[np.float64]
-    value: float
+    value: float  # Of the surface or the peak; of light that of the voxel
 
 
 class VolumeMapper(CutMapper[Options]):
     """Mapper that draws a `RaycastVolume` through VTK's own lights, passes, clipping planes and selection.
 
-    Parameters
-    ----------
-    volume : RaycastVolume, optional
-        What to draw. Without it, the image that ``SetInputConnection`` or ``SetInputData`` connects.
-    casting : RaycastOptions, optional
-        Options of the rays; by default the greatest value on each ray (``'mip'``) of connected data.
-    colouring : Colouring, optional
-        Of surfaces and peaks: ``'solid'``, or ``'point_scalar'`` of any source, with the values of the volume.
-        By default white, and peaks of connected data by look-up table and scalar range of ``vtkMapper``,
-        surfaces in the colour of the actor's property. Light has the colours of its transfer function.
-    renderer_factory : callable, optional
-        Takes a moderngl context and the volume; returns a renderer as of `pvfiblets.engine.volumes`.
-
-    Attributes
-    ----------
-    shaded : bool
-        Whether the scene's lights shine on light through the volume, as the actor's property reflects them. Takes
-        effect with the next frame.
-    lit_surfaces : bool
-        Whether they light translucent surfaces, if `casting` has several. VTK shades all others.
-    coarser : InteractiveQuality or None
-        How rays are cast instead while an interactor moves the camera. Takes effect with the next frame.
-
-    Notes
-    -----
     Rays of light and peaks end at whatever is opaque in the scene, in whichever order it was added, in each pixel at
     the farthest of its samples. Where a render pass keeps no depth that can be read, they run through it, and all of
     the volume's light lies over what its first part is in front of.
@@ -105,10 +73,16 @@ class VolumeMapper(CutMapper[Options]):
 
     def __init__(
         self,
+        # What to draw. Without it, the image that ``SetInputConnection`` or ``SetInputData`` connects.
         volume: RaycastVolume | None = None,
+        # Options of the rays; by default the greatest value on each ray (``'mip'``) of connected data
         casting: RaycastOptions | None = None,
         *,
+        # Of surfaces and peaks: ``'solid'``, or ``'point_scalar'`` of any source, with the values of the volume. By
+        # default white, and peaks of connected data by look-up table and scalar range of ``vtkMapper``, surfaces in
+        # the colour of the actor's property. Light has the colours of its transfer function.
         colouring: Colouring | None = None,
+        # Takes a moderngl context and the volume; returns a renderer as of `pvfiblets.engine.volumes`
         renderer_factory: Callable[..., Any] = volume_renderer,
     ) -> None:
         if casting is None:
@@ -119,7 +93,9 @@ class VolumeMapper(CutMapper[Options]):
             casting = RaycastOptions("mip")
         self._casting = casting
         self._taken: tuple[Any, ...] = (0, None)
+        # How rays are cast instead while an interactor moves the camera. Takes effect with the next frame.
         self.coarser: InteractiveQuality | None = None
+        # Whether lights shine on light through the volume, and on translucent surfaces, if `casting` has several.
         self.shaded, self.lit_surfaces = False, True
         usual = _plain(casting) if volume is not None else None
         super().__init__(volume, colouring=usual, options=Options(), renderer_factory=renderer_factory)
@@ -235,7 +211,7 @@ class VolumeMapper(CutMapper[Options]):
         found = depth.copy(viewport, moved=True)
         return depth.copy_of_window(renderer, viewport[2:]) if found is None else found
 
-    def _seen_through(self, buffer: Any) -> Any:
+    def _faint_light(self, buffer: Any) -> Any:
         """Light and peaks that hardly show are not looked at."""
         from pvfiblets.engine.effects.picture import FAINTEST, SeenThrough
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
-__all__ = ["fiblets_of", "geometry_of", "measured_look", "painted_fiblets", "painted_halos", "painted_tubes"]
-
 POINT_BITS = 16  # a scalar range may be a small part of what the numbers range over
 COLOURS = "colours"
 

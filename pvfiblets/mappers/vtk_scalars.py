@@ -18,8 +18,6 @@ from vtkmodules.vtkRenderingCore import vtkAbstractMapper
 
 from pvfiblets.mappers.colouring import Colouring
 
-__all__ = ["Paint", "paint_of", "scalars_of", "state_of"]
-
 DEFAULT, DIRECT = 0, 2  # VTK_COLOR_MODE_DEFAULT, VTK_COLOR_MODE_DIRECT_SCALARS
 POINTS, CELLS = 0, 1  # what GetAbstractScalars says of an array
 MAGNITUDE = 0  # vtkScalarsToColors::MAGNITUDE

@@ -78,7 +78,7 @@ class Slot:
         if kept is not None:
             kept.release()
 
-    def outside_depth(self, ctx: Any) -> OutsideDepth:
+    def outside_depth(self, ctx: moderngl.Context) -> OutsideDepth:
         """Return what copies the depth of other actors."""
         if self._outside is None:
             self._outside = OutsideDepth(ctx)
@@ -106,7 +106,7 @@ class Slot:
         self.thinned.clear()
         self.drawn.clear()
 
-    def list_texture(self, name: str, source: Any, pixels: Any, ctx: Any) -> Any:
+    def list_texture(self, name: str, source: Any, pixels: Any, ctx: moderngl.Context) -> Any:
         """Return an RGBA texture that holds a list of colours row by row."""
         if name in self.textures and self.versions.get(name) is source:
             return self.textures[name]

@@ -13,8 +13,6 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = ["CameraPlace", "Light", "PageScene", "encoded", "fiblet_layer"]
-
 Made = TypeVar("Made")
 Vector = tuple[float, float, float]
 Bounds = tuple[float, float, float, float, float, float]

@@ -21,8 +21,6 @@ from pvfiblets.support.whole_files import made_folder, replacing
 
 from .scene import PageScene
 
-__all__ = ["LARGEST_FILE", "check_name", "write_page"]
-
 LARGEST_FILE = 64_000_000
 """Bytes of data above which they lie beside the page: browsers keep the text of a page in memory, twice."""
 
@@ -54,7 +52,7 @@ def write_page(scene: PageScene, path: str | PathLike[str], *, largest_file: int
     else:
         content["data"] = [{"bytes": len(blob)} for blob in scene.blobs]
         blocks = [_data_block(f"data-{number}", blob) for number, blob in enumerate(scene.blobs)]
-    text = page_text(content, apart=apart)
+    text = _page_text(content, apart=apart)
     head, tail = text.split("<!-- data -->")
     with replacing(page, len(text) + sum(map(len, blocks))) as file:
         file.write(head.encode())
@@ -72,7 +70,7 @@ def check_name(path: str | PathLike[str]) -> Path:
     return path
 
 
-def page_text(content: dict[str, Any], *, apart: bool) -> str:
+def _page_text(content: dict[str, Any], *, apart: bool) -> str:
     """Return the page without its data."""
     script, style = _resource("page.js"), _resource("page.css")
     policy = "; ".join(

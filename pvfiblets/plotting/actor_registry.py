@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import warnings
 import weakref
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
@@ -21,14 +21,12 @@ from vtkmodules.vtkRenderingCore import vtkPicker
 
 from pvfiblets.antialias import default_antialias
 from pvfiblets.plotting import exports, transparent, visible_picking  # noqa: F401 - registers them with plotters
-from pvfiblets.plotting.call_signature import document
+from pvfiblets.plotting.call_signature import document, refuse_unknown, split_arguments
 from pvfiblets.plotting.mesh_arguments import apply, translate
 from pvfiblets.plotting.scalar_bar_labels import label_format
-from pvfiblets.plotting.settings import Given, Setting, Settings
-from pvfiblets.plotting.settings import arguments as settings_of_call
+from pvfiblets.plotting.settings import Settings
 from pvfiblets.plotting.shared_settings import Common
 from pvfiblets.plotting.source_changes import SourceChanges, is_dataset
-from pvfiblets.plotting.unsupported_arguments import why_not
 
 
 class Registered(Protocol):
@@ -153,12 +151,10 @@ class ActorRegistry(Generic[A]):
 
     def add(self, /, source: Any, **arguments: Any) -> A:
         """Make an actor and add it to the plotter."""
-        common = {name: arguments.pop(name, one.default) for name, one in Common.DECLARED.items()}
-        of_mesh = {name: arguments.pop(name) for name in self.COMMON.DECLARED if name in arguments}
+        words = self.COMMON.DECLARED.keys() - Common.DECLARED.keys()
+        of_mesh = {name: arguments.pop(name) for name in words if name in arguments}
         translate(self.ADD, of_mesh, source, arguments, self._plotter.theme)
-        known = set(settings_of_call(self._SETTINGS))
-        given = Given(self._SETTINGS, arguments)
-        own = {name: value for name, value in arguments.items() if name not in known}
+        common, given, own = split_arguments(self, Common, arguments)
         self._check_known(own)
         made = self._make(source, given, **own)
         apply(self.ADD, of_mesh, made)
@@ -173,15 +169,7 @@ class ActorRegistry(Generic[A]):
 
     def _check_known(self, own: dict[str, Any]) -> None:
         """Raise a TypeError for unknown arguments, in the name of the called function."""
-        self._refuse([name for name in own if name not in self.OWN])
-
-    def _refuse(self, unknown: Sequence[str]) -> None:
-        """Raise a TypeError for unknown arguments; for arguments of ``add_mesh`` it names the replacement."""
-        if unknown:
-            name = unknown[0]
-            if isinstance(getattr(self._SETTINGS, name, None), Setting):
-                raise TypeError(f"{self.ADD}() takes no {name}: set it on the actor it returns (actor.{name} = ...)")
-            raise TypeError(why_not(self.ADD, name) or f"{self.ADD}() got an unexpected keyword argument {name!r}")
+        refuse_unknown(self, own)
 
     def __iter__(self) -> Iterator[A]:
         return iter(tuple(self._actors))

@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any
 import pyvista as pv
 
 from pvfiblets.plotting.components import register
-from pvfiblets.plotting.settings import Given, arguments
+from pvfiblets.plotting.settings import Given, Setting, arguments
+from pvfiblets.plotting.unsupported_arguments import why_not
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
-    from pvfiblets.plotting.settings import Argument
+    from pvfiblets.plotting.settings import Argument, Settings
 
 _WIDEST = 100
 
@@ -51,16 +52,24 @@ def document(component: Any) -> None:
     component.add = add
 
 
-def split_arguments(component: Any, given: dict[str, Any]) -> tuple[dict[str, Any], Given, dict[str, Any]]:
+def split_arguments(
+    component: Any, common: type[Settings], given: dict[str, Any]
+) -> tuple[dict[str, Any], Given, dict[str, Any]]:
     """Split the arguments of ``add``: what all drawables have in common, settings, and what is about the data."""
-    common = {name: given.pop(name, one.default) for name, one in component.COMMON.DECLARED.items()}
+    shared = {name: given.pop(name, one.default) for name, one in common.DECLARED.items()}
     declared = component._SETTINGS  # noqa: SLF001 - as every component has it
     known, settings = arguments(declared), Given(declared, given)
-    own = {name: value for name, value in given.items() if name not in known}
-    unknown = next((name for name in own if name not in component.OWN), None)
-    if unknown is not None:
-        raise TypeError(f"{component.ADD}() got an unexpected keyword argument {unknown!r}")
-    return common, settings, own
+    return shared, settings, {name: value for name, value in given.items() if name not in known}
+
+
+def refuse_unknown(component: Any, own: Iterable[str]) -> None:
+    """Raise a TypeError for arguments that a component does not take; for those of ``add_mesh`` it names others."""
+    name = next((name for name in own if name not in component.OWN), None)
+    if name is None:
+        return
+    if isinstance(getattr(component._SETTINGS, name, None), Setting):  # noqa: SLF001 - as every component has it
+        raise TypeError(f"{component.ADD}() takes no {name}: set it on the actor it returns (actor.{name} = ...)")
+    raise TypeError(why_not(component.ADD, name) or f"{component.ADD}() got an unexpected keyword argument {name!r}")
 
 
 def plotter_method(component: Any) -> Any:

@@ -102,7 +102,7 @@ class ColouredActor(Settings, pv.Actor):
             Of the same class, not in any plotter yet.
         """
         make: Any = type(self)
-        twin: Self = make(**self._made_with(), settings=self._kept(), theme=self._theme)
+        twin: Self = make(**self._made_with(), settings=self._arguments_of_copy(), theme=self._theme)
         twin._be_like(self, deep)
         return twin
 

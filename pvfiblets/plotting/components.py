@@ -12,8 +12,6 @@ from typing import Any, TypeVar
 
 import pyvista as pv
 
-__all__ = ["HOMES", "await_components", "register"]
-
 AnyComponent = TypeVar("AnyComponent", bound=type)
 
 HOMES = {

@@ -13,8 +13,6 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
-__all__ = ["cut_surface"]
-
 PIECES = 16  # edges that a shape's shortest side is divided into; a ball's border is then off by a 500th of its radius
 LEAST = 64  # no edge is divided below this part of a shape's longest side, however thin it is
 MOST = 2_000_000  # triangles; from there on none is divided further

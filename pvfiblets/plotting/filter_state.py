@@ -25,10 +25,6 @@ if TYPE_CHECKING:
 
     Lines: TypeAlias = FibletSet | Streamlines
 
-__all__ = [
-    "Choices", "Condition", "Criterion", "Subject", "as_predicate", "checked_range", "in_groups", "unique_name"
-]  # fmt: skip
-
 
 class Subject(Protocol):
     """Lines that an actor draws, of which a user chooses some."""

@@ -16,8 +16,6 @@ from pvfiblets.support.surface_space import NO_VOLUME, Placed, in_scanner_space,
 from pvfiblets.volumes import freesurfer_files
 from pvfiblets.volumes.gifti_files import SUFFIXES, read_gifti
 
-__all__ = ["placed_surface", "read_surface", "shown_array", "with_vertex_values"]
-
 POINTS, TRIANGLES, LABELS = 1008, 1009, 1002  # NIFTI_INTENT_POINTSET, NIFTI_INTENT_TRIANGLE and NIFTI_INTENT_LABEL
 SCANNER = 1  # NIFTI_XFORM_SCANNER_ANAT
 

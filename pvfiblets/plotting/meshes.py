@@ -23,8 +23,6 @@ from pvfiblets.support.vtk_space import (
 from pvfiblets.volumes.freesurfer_files import SURFACES as FREESURFER
 from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 
-__all__ = ["SUFFIXES", "mesh_facts", "read_mesh", "space_of_file"]
-
 SUFFIXES = (".ply", ".stl", ".obj", ".off", *GIFTI, *FREESURFER)  # suffixes of files that hold only surfaces
 
 OF_VTK = (".vtk", ".vtp", *READ_BY_VTK)

@@ -11,8 +11,6 @@ from pvfiblets.engine.regions.clip_planes import placed_sides, planes_of
 from pvfiblets.engine.view import MAX_CLIP_PLANES
 from pvfiblets.query.regions.shapes import SPHERE, SURFACE
 
-__all__ = ["cuts_of"]
-
 OF_THE_READER = 2  # planes of the slab that a page's reader may cut with, which shares the places of clip planes
 
 

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.mappers.colouring import Colouring
 
-__all__ = ["camera_place", "export_page", "page_and_actors", "page_of"]
-
 _SHOWN_EFFECTS = {"light", "illuminated", "selection"}
 _OPACITY = "layers"
 _SOON = 5_000_000  # points
@@ -214,7 +212,7 @@ def _names(categories: Mapping[int, str], colouring: Colouring) -> list[dict[str
     ]
 
 
-def _controls(scene: PageScene, fiblets: Any, actor: Any, colouring: Colouring) -> list[dict[str, Any]]:
+def _controls(scene: PageScene, fiblets: FibletSet, actor: Any, colouring: Colouring) -> list[dict[str, Any]]:
     """Return numbers of streamlines that a page can filter by: the colouring ones, and lengths if they are cheap."""
     found: dict[str, Any] = {}
     scalars = getattr(actor, "active_scalars", None)
@@ -240,7 +238,7 @@ def _label(name: str, usual: str) -> str:
     return usual if "Addr=" in name else name
 
 
-def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any, dict[str, Any], tuple[str, ...]]:
+def _colours(scene: PageScene, fiblets: FibletSet, colouring: Colouring) -> tuple[Any, dict[str, Any], tuple[str, ...]]:
     """Return the set with what colours it, ``Colours`` of the page, and the arrays of points that it needs."""
     if not (colouring.kind.table and colouring.kind.numbers == "points") and colouring.opacity_source is not None:
         _, colours, _ = _colours(scene, fiblets, replace(colouring, opacity_source=None))

@@ -14,8 +14,6 @@ from pvfiblets.support.vtk_space import space_of_dataset, to_ras
 if TYPE_CHECKING:
     from pvfiblets.regions import Region
 
-__all__ = ["as_region", "direction_of", "slab"]
-
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 

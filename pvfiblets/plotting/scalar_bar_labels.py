@@ -6,8 +6,6 @@ import math
 
 import numpy as np
 
-__all__ = ["label_format", "label_text"]
-
 LABELS = 5  # default number of labels beside a bar of PyVista
 
 WHOLE = 2.0**53

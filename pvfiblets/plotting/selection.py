@@ -16,8 +16,6 @@ from pvfiblets.plotting.filtering import FilteredActor
 if TYPE_CHECKING:
     from pvfiblets.plotting.filter_state import Subject
 
-__all__ = ["AS_BEFORE", "SelectedActor", "SelectionStyle"]
-
 MODES = ("replace", "add", "remove", "toggle")
 AS_BEFORE: Any = object()  # default of arguments that change nothing
 

@@ -23,7 +23,7 @@ class Place:
         """Change it; a refused value leaves all as it was."""
         raise NotImplementedError
 
-    def kept(self, actor: Any, one: Argument) -> Any:
+    def value_for_copy(self, actor: Any, one: Argument) -> Any:
         """Return the value to pass to a copy."""
         return getattr(actor, one.name)
 
@@ -52,7 +52,7 @@ class _Colours(Place):
     def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
         actor._set(setting.field, value)  # noqa: SLF001
 
-    def kept(self, actor: Any, one: Argument) -> Any:
+    def value_for_copy(self, actor: Any, one: Argument) -> Any:
         return getattr(actor._settings, one.field)  # noqa: SLF001
 
 
@@ -89,10 +89,10 @@ class Own(Place):
         """Call the actor's method."""
         getattr(actor, f"_write_{setting.field}")(value)
 
-    def kept(self, actor: Any, one: Argument) -> Any:
+    def value_for_copy(self, actor: Any, one: Argument) -> Any:
         """Ask the actor's ``_kept_NAME``, if it has such."""
         ask = getattr(actor, f"_kept_{one.field}", None)
-        return super().kept(actor, one) if ask is None else ask()
+        return super().value_for_copy(actor, one) if ask is None else ask()
 
 
 class _Later(Own):

@@ -20,17 +20,6 @@ from typing import Any, ClassVar, Generic, Self, TypeVar, overload
 
 from pvfiblets.plotting.setting_places import Place
 
-__all__ = [
-    "Argument",
-    "Given",
-    "NoSetting",
-    "Row",
-    "Setting",
-    "Settings",
-    "arguments",
-    "truth",
-]
-
 T = TypeVar("T")
 
 SAME: Any = object()  # default of a row: that of the setting
@@ -209,9 +198,10 @@ class Settings:
             if not isinstance(value, Setting):  # of the call alone
                 delattr(cls, name)
 
-    def _kept(self) -> dict[str, Any]:
+    def _arguments_of_copy(self) -> dict[str, Any]:
         """Return the arguments that make an actor with the same settings."""
-        return {name: one.where.kept(self, one) for name, one in arguments(type(self)).items() if one.where is not None}
+        declared = arguments(type(self)).items()
+        return {name: one.where.value_for_copy(self, one) for name, one in declared if one.where is not None}
 
     def _take(self, values: Mapping[str, Any]) -> None:
         """Set those values that an actor is not made with, in the order of their declarations."""

@@ -73,15 +73,21 @@ _OF_HALOS = {
     "line_width": "points have a point_size and a halo_size, in mm",
     "silhouette": "halos are outlines: set halo_color and strip_width",
 }
+_OF_IMAGES = {"colormap": "give cmap", "rng": "give clim"}
+_OF_GRAPHS = {**_OF_IMAGES, "line_width": "radius is that of the strongest edge, in mm"}
 _SPECIAL = {
     "add_raycast_volume": _OF_VOLUMES, "add_spline_tubes": _OF_TUBES, "add_halo_lines": _OF_HALOS,
-    "add_halo_points": _OF_HALOS,
+    "add_halo_points": _OF_HALOS, "add_slices": _OF_IMAGES, "add_connectome": _OF_GRAPHS,
 }  # fmt: skip
+_NO_ACTORS = ("add_slices", "add_connectome")  # they return several actors' owner, to which words of one do not apply
 
 
 def why_not(add: str, name: str) -> str | None:
     """Return the message for an argument that a method of plotters does not take; None for unknown names."""
-    why = _SPECIAL.get(add, {}).get(name) or _WORDS.get(name)
+    why = _SPECIAL.get(add, {}).get(name)
+    if add in _NO_ACTORS:
+        return None if why is None else f"{add}() takes no {name}: {why}"
+    why = why or _WORDS.get(name)
     if name in _OURS:
         why = f"give {_OURS[name]}"
     if why is None and isinstance(getattr(pv.Property, name, None), property):

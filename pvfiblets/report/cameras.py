@@ -11,8 +11,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["ELEVATION", "VERTICAL_ANGLE", "VIEWS", "Camera", "Lens", "by_turns", "orbit", "unit"]
-
 VERTICAL_ANGLE = 45.0  # degrees; this and the distances follow Russig et al. 2020, section 4
 VIEWS = {"far": 1.0, "close": 1.0 / 3.0}
 ELEVATION = 15.0  # degrees above the plane of the orbit

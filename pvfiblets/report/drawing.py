@@ -10,8 +10,6 @@ from typing import Any, TypeAlias
 from .record import Record
 from .study import Options, Unavailable
 
-__all__ = ["Part", "WindowPart", "data_bytes", "drawing_context", "run_parts"]
-
 Part: TypeAlias = Callable[[Any, Options], Iterator[Record]]  # A part of a study: from a context and options to records
 
 WindowPart: TypeAlias = Callable[[Options], Iterator[Record]]  # A part of a study that draws in windows

@@ -11,8 +11,6 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-__all__ = ["about", "card_state", "processor", "slug"]
-
 PACKAGES = ("pvfiblets", "numpy", "numba", "moderngl", "vtk", "pyvista", "dipy", "zstandard", "matplotlib")
 
 

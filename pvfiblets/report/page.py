@@ -9,8 +9,6 @@ from typing import Any
 from .record import FRAME, CaseResult, LeftOut, Record, StudyResult, Timing
 from .report_file import Report
 
-__all__ = ["page"]
-
 MANY = 6  # rows that a table has for one reason
 
 _WHAT = (

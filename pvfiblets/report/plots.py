@@ -15,8 +15,6 @@ from .dot_plot import in_rows
 from .record import Axes, Record, StudyResult
 from .report_file import Report
 
-__all__ = ["draw", "in_panels"]
-
 COLUMNS = 3
 LONGEST_TITLE = 54  # letters that a panel is wide
 # Distinguishable by colour-blind readers as well (Okabe and Ito), then some more.

@@ -30,7 +30,7 @@ class CellProcess:
         self._errors: IO[str] | None = None
 
     @classmethod
-    def of(cls, module: str) -> CellProcess:
+    def for_module(cls, module: str) -> CellProcess:
         """Return one that runs a module."""
         return cls([sys.executable, "-m", module])
 

@@ -19,8 +19,6 @@ from pvfiblets.errors import FormatError
 
 from .record import Axes, CaseResult, Figure, LeftOut, Record, StudyResult, Timing
 
-__all__ = ["FORMAT", "Report"]
-
 FORMAT = "pvfiblets report 1"
 NAME = "report.json"
 LISTED = ("records", "cases")  # one to a line; a file without cases is read as one whose studies have none

@@ -14,8 +14,6 @@ from .report_file import Report
 from .studies.codec.data_sets import files_of
 from .study import Budget, Options, Unavailable
 
-__all__ = ["QUICK_SECONDS", "make_report", "one_study", "write_pages"]
-
 QUICK_SECONDS = 120.0  # of a quick report, plots included
 PLOT_SECONDS = 30.0  # of these, kept for the page and the plots
 QUICK_REPEATS = 3

@@ -10,14 +10,15 @@ import gc
 import re
 import time
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .record import FRAME, Record, Timing
 from .study import LATE, Options
 
-__all__ = ["Comparison", "Turns", "clock_of", "timing", "turns_of"]
+if TYPE_CHECKING:
+    import moderngl
 
 SOFTWARE = re.compile("llvmpipe|softpipe|swrast|swiftshader|software", re.IGNORECASE)
 
@@ -25,14 +26,14 @@ _GRAIN = 2e-3  # s: shorter calls are put together until they take about as long
 _LONG = 0.5  # s
 
 
-def clock_of(ctx: Any) -> tuple[Callable[[], float], str]:
+def clock_of(ctx: moderngl.Context) -> tuple[Callable[[], float], str]:
     """Return the clock that measures what a context's frames cost, and its name as in :class:`.Timing`."""
     if SOFTWARE.search(str(ctx.info["GL_RENDERER"])):
         return time.process_time, "cpu"
     return time.perf_counter, "wall"
 
 
-def turns_of(ctx: Any) -> Turns:
+def turns_of(ctx: moderngl.Context) -> Turns:
     """Return turns that are timed by a context's clock; their calls must end with ``ctx.finish()``."""
     return Turns(*clock_of(ctx))
 

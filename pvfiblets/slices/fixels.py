@@ -19,8 +19,6 @@ import numpy.typing as npt
 from pvfiblets.errors import FormatError
 from pvfiblets.images.files import read_image
 
-__all__ = ["Fixels", "files_beside", "read_fixels"]
-
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
@@ -103,7 +101,7 @@ def _file(folder: Path, stem: str) -> Path | None:
     return next((found for one in SUFFIXES if (found := folder / f"{stem}{one}").is_file()), None)
 
 
-def files_beside(path: Path) -> list[Path]:
+def sibling_files(path: Path) -> list[Path]:
     """Return index and directions of the folder that a path is or lies in; none if it is no folder of fixels."""
     folder = path if path.is_dir() else path.parent
     if folder == path.parent and _stem(path) is None:
@@ -114,7 +112,7 @@ def files_beside(path: Path) -> list[Path]:
 
 def read_fixels(path: Path) -> tuple[Fixels, Array, str] | None:
     """Read a folder of fixels, or one of its files."""
-    beside = files_beside(path)
+    beside = sibling_files(path)
     if not beside:
         if path.is_dir():
             raise FormatError(path, None, "no index and directions in the folder", "a fixel directory of MRtrix")

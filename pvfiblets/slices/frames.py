@@ -10,11 +10,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = [
-    "ORIENTATIONS", "PlaneGrid", "checked_frame", "checked_position", "covered", "grid_of", "letters", "nearest_frame",
-    "plane_axes", "turned",
-]  # fmt: skip
-
 Array = npt.NDArray[np.float64]
 
 ORIENTATIONS = ("axial", "coronal", "sagittal")

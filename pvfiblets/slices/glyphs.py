@@ -11,11 +11,6 @@ from pvfiblets.slices.image import SliceImage
 from pvfiblets.slices.spherical_harmonics import degrees, sh_matrix
 from pvfiblets.slices.vectors import check_axes, fsl_axes
 
-__all__ = [
-    "KINDS", "LINES", "TENSORS", "Glyphs", "axes_of_glyphs", "check_glyphs", "ellipsoids", "lines_of_fixels",
-    "lines_of_peaks", "lobes", "voxels_on_plane",
-]  # fmt: skip
-
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 

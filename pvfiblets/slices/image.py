@@ -14,8 +14,6 @@ import numpy.typing as npt
 from pvfiblets.images.sources import as_image, colour_fields
 from pvfiblets.slices.fixels import Fixels, read_fixels
 
-__all__ = ["KINDS", "SliceImage", "as_slice_image"]
-
 Array = npt.NDArray[np.float64]
 
 KINDS = ("scalars", "rgb", "direction", "labels")  # meanings of the numbers of a voxel

@@ -16,8 +16,6 @@ import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
 
-__all__ = ["LabelTable", "as_label_table", "distinct_colours", "table_of_gifti"]
-
 SUFFIXES = (".txt", ".ctab", ".label", ".lbl", ".tsv", ".gii", ".gii.gz")
 
 _NUMBER = r"((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"

@@ -11,8 +11,6 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["BASES", "degrees", "sh_matrix"]
-
 BASES = ("mrtrix", "tournier07_legacy", "descoteaux07", "descoteaux07_legacy")
 """Of dipy, ``mrtrix`` is ``tournier07`` with ``legacy=False``; ``_legacy`` stands for ``legacy=True``."""
 

@@ -9,8 +9,6 @@ import numpy.typing as npt
 
 from pvfiblets.slices.image import SliceImage
 
-__all__ = ["AXES", "check_axes", "fsl_axes", "in_scanner_axes"]
-
 Array = npt.NDArray[np.float64]
 
 AXES = ("scanner", "fsl")

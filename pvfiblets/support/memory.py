@@ -24,25 +24,6 @@ try:
 except ImportError:  # Windows
     resource = None  # type: ignore[assignment]
 
-__all__ = [
-    "CAN_LIMIT",
-    "ENVIRONMENT",
-    "TooLargeError",
-    "check_room",
-    "fits",
-    "free_host_memory",
-    "limit",
-    "limited",
-    "limited_to",
-    "of_machine",
-    "parse",
-    "resident",
-    "room",
-    "shown",
-    "taken",
-    "within",
-]
-
 MEBIBYTE = 1 << 20
 CAN_LIMIT = resource is not None and sys.platform.startswith("linux")
 """Whether :func:`limit` is possible: other systems have no such limit, or do not keep to it."""
@@ -58,19 +39,7 @@ Result = TypeVar("Result")
 
 
 class TooLargeError(FibletsError, MemoryError):
-    """Something needs more memory than there is.
-
-    Parameters
-    ----------
-    needed : int or None
-        Declared number of bytes, if any.
-
-    Attributes
-    ----------
-    needed : int or None
-    left : int or None
-        Bytes that were left for it when it was refused.
-    """
+    """Something needs more memory than there is: ``needed`` bytes of which ``left`` were left, if known."""
 
     def __init__(self, needed: int | None = None, left: int | None = None) -> None:
         self.needed, self.left = needed, left

@@ -18,8 +18,6 @@ import numpy.typing as npt
 
 from .file_notes import note
 
-__all__ = ["MATRICES", "UNITS", "Matrix", "Units", "affine_of", "chosen", "code_of", "nifti_space"]
-
 Array = npt.NDArray[np.float64]
 Matrix: TypeAlias = Literal["sform", "qform", "LAS", "RAS"]
 Units: TypeAlias = Literal["mm", "header"]

@@ -17,8 +17,6 @@ import numpy.typing as npt
 
 from .file_notes import note
 
-__all__ = ["NO_VOLUME", "Placed", "as_stored", "in_scanner_space", "numbers_of", "tkras_chosen"]
-
 Array = npt.NDArray[np.float64]
 
 _AXES = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])

@@ -41,7 +41,7 @@ def locked(place: Path) -> Iterator[None]:
 
 
 @contextmanager
-def scratch_beside(target: Path) -> Iterator[Path]:
+def scratch_folder_for(target: Path) -> Iterator[Path]:
     """Make a temporary folder beside a target, and remove it afterwards."""
     whole = target.resolve()
     place = unfinished(whole.with_name(f"{whole.name}.{next(_NUMBERS)}"), "scratch")  # threads have one each

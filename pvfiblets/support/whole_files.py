@@ -43,7 +43,7 @@ def naming_target(path: str | PathLike[str], needed: int | Callable[[], int] | N
     except OSError as error:
         if error.errno is None or not _of_target(error, target):
             raise
-        raise OSError(error.errno, _told(error, target, needed), os.fspath(path)) from error
+        raise OSError(error.errno, _message(error, target, needed), os.fspath(path)) from error
 
 
 def made_folder(path: str | PathLike[str]) -> Path:
@@ -70,7 +70,7 @@ def _of_target(error: OSError, target: Path) -> bool:
     return named.is_relative_to(folder) and str(named.relative_to(folder)).startswith(".") and named != folder
 
 
-def _told(error: OSError, target: Path, needed: int | Callable[[], int] | None) -> str:
+def _message(error: OSError, target: Path, needed: int | Callable[[], int] | None) -> str:
     folder = target.absolute().parent
     takes = ""
     if isinstance(needed, int):

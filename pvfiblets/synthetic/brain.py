@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.codec.ordering import Order
 
-__all__ = ["brain"]
-
 TRACKED = 16_384  # streamlines tracked, where steps are 0.1 mm or longer; fewer of shorter steps: equal points in all
 TURNS = 4  # variants of each, the first as tracked
 TURN = 2.0  # degrees: standard deviation of the turn about each axis

@@ -17,8 +17,6 @@ from pvfiblets.support.ragged import offsets_from_counts
 
 from .tracking import brain_streamlines
 
-__all__ = ["HALO_SETS", "HALO_SIZES", "halo_set"]
-
 HALO_SIZES: dict[str, tuple[int | None, int]] = {
     "shape-small": (None, 172_973),
     "fibres-subset": (11_306, 260_836),
@@ -92,14 +90,14 @@ def halo_set(name: str, seed: int = 0) -> HaloLines | HaloPoints:
 def _exact_counts(share: _Floats, total: int, least: int, most: int | _Ints) -> _Ints:
     """Vertices of each line: nearly in proportion to its share, from least to most, together exactly so many."""
 
-    def of(scale: float) -> _Ints:
+    def counts_at(scale: float) -> _Ints:
         return np.clip(np.rint(scale * share), least, most).astype(np.int64)
 
     low, high = 0.0, 2.0 * total / float(share.min())
     for _ in range(80):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if of(middle).sum() <= total else (low, middle)
-    counts = of(low)
+        low, high = (middle, high) if counts_at(middle).sum() <= total else (low, middle)
+    counts = counts_at(low)
     counts[np.flatnonzero(counts < most)[: total - int(counts.sum())]] += 1
     return counts
 

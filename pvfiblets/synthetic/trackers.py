@@ -26,8 +26,6 @@ from pvfiblets.streamlines import Streamlines
 
 from .tracking import brain_streamlines
 
-__all__ = ["ALGORITHMS", "NOISE", "NOISE_STEP", "tracked_streamlines"]
-
 ALGORITHMS = ("iFOD1", "iFOD2", "SD_STREAM", "EuDX")
 
 NOISE, NOISE_STEP = 4.0, 0.2  # degrees per axis of a probabilistic tracker's turns, at a step in mm

@@ -25,9 +25,6 @@ import numpy.typing as npt
 
 from .spline_tubes import SplineTubes, chord_lengths
 
-__all__ = ["MIDDLE", "Boxes", "boxes", "controls", "cubic", "derivative", "deviation", "deviations", "evaluate",
-           "sample_spheres"]
-
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 

@@ -20,8 +20,6 @@ import numpy.typing as npt
 from pvfiblets.support.real_numbers import real_numbers
 from pvfiblets.support.value_reference import value_reference
 
-__all__ = ["NodeValues", "SplineTubes"]
-
 Doubles: TypeAlias = npt.NDArray[np.float64]
 Ints: TypeAlias = npt.NDArray[np.int64]
 Bounds: TypeAlias = tuple[float, float, float, float, float, float]
@@ -31,23 +29,12 @@ _BLOCK = 1 << 16  # segments handled at a time: their working arrays stay in cac
 
 @dataclass(frozen=True, eq=False)
 class NodeValues:
-    """One attribute at every node, interpolated between nodes as the position is.
+    """One attribute at every node, interpolated between nodes as the position is."""
 
-    Parameters
-    ----------
-    values : array_like
-        ``(n_nodes,)`` float64 numbers, or ``(n_nodes, 4)`` float64 RGBA from 0 to 1. Numbers that are not finite stand
-        for "no value".
-    slopes : array_like
-        Derivatives in the same shape, finite; per mm or per segment parameter, as the tubes' tangents are.
-
-    Raises
-    ------
-    ValueError
-        If the shapes differ or are neither of the two, a slope is not finite, or a colour lies outside 0..1.
-    """
-
+    # ``(n_nodes,)`` float64 numbers, or ``(n_nodes, 4)`` float64 RGBA from 0 to 1. Numbers that are not finite stand
+    # for "no value".
     values: Doubles
+    # Derivatives in the same shape, finite; per mm or per segment parameter, as the tubes' tangents are
     slopes: Doubles
 
     def __post_init__(self) -> None:

@@ -11,8 +11,6 @@ import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
 
-__all__ = ["SURFACES", "VALUES", "read_annotation", "read_geometry", "read_numbers"]
-
 SURFACES = (
     ".pial", ".white", ".inflated", ".sphere", ".sphere.reg", ".orig", ".smoothwm", ".midthickness", ".graymid",
     ".pial.t1", ".white.preaparc",

@@ -10,8 +10,6 @@ from typing import Any
 
 from .raycast_options import PROJECTIONS, RaycastOptions
 
-__all__ = ["COARSEST_STEP", "InteractiveQuality"]
-
 COARSEST_STEP = 4.0  # times the step at a quality of a quarter and less; 1 / quality above
 
 LARGEST_STEP = 1e3  # of RaycastOptions
@@ -19,21 +17,13 @@ LARGEST_STEP = 1e3  # of RaycastOptions
 
 @dataclass(frozen=True)
 class InteractiveQuality:
-    """Changes to a casting while the camera moves.
+    """Changes to a casting while the camera moves."""
 
-    Parameters
-    ----------
-    step : float, default: 1
-        Times the step, 1 or more. Light that is integrated beforehand keeps its step, and with it its table, unless
-        ``exactly``.
-    sparse : int, default: 1
-        Pixels between first rays, 1, 2 or 4; more, if the casting has more.
-    exactly : bool, default: False
-        Whether light that is integrated beforehand has longer steps too; its table is then made for these as well.
-    """
-
+    # Times the step, 1 or more. Light that is integrated beforehand keeps its step, and with it its table, unless
+    # ``exactly``.
     step: float = 1.0
-    sparse: int = 1
+    sparse: int = 1  # Pixels between first rays, 1, 2 or 4; more, if the casting has more
+    # Whether light that is integrated beforehand has longer steps too; its table is then made for these as well
     exactly: bool = False
 
     @classmethod

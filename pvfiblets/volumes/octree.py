@@ -35,10 +35,6 @@ import numpy.typing as npt
 
 from .volume import RaycastVolume
 
-__all__ = [
-    "HOMOGENEOUS", "LEAF", "OVERSHOOT", "SKIP", "VISIT", "Level", "Octree", "build_octree", "flags", "homogeneous",
-]  # fmt: skip
-
 LEAF = 8  # cells along each side of a leaf: level 3
 
 AT_ONCE = 1 << 22

@@ -11,8 +11,6 @@ import numpy.typing as npt
 
 from pvfiblets.codec.jit import kernel, parallel_kernel
 
-__all__ = ["preintegrate", "unit_depths"]
-
 LARGEST_DEPTH = 24.0 * np.log(2.0)  # as of transfer.py, which loads this module only when it is needed
 SPENT = 40.0  # optical depth that no visible light passes: exp(-40) is 4e-18
 THICK = 0.5  # optical depth of a piece beyond which exp(-tau) falls too fast for one panel of the quadrature

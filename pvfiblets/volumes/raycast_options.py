@@ -15,8 +15,6 @@ from .volume import FILTERS
 if TYPE_CHECKING:
     from .transfer import Transfer
 
-__all__ = ["INTEGRATORS", "MAX_VALUES", "MODES", "PROJECTIONS", "REFINEMENTS", "RaycastOptions"]
-
 MODES = ("composite", "isosurface", "mip", "local-mip", "minimum", "average")
 """What a ray shows: all that it passes through, a surface, the greatest value, the first peak above a threshold,
 the least value, or the mean one."""

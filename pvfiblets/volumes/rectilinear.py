@@ -7,8 +7,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["MOST_TIMES", "evenly"]
-
 MOST_TIMES = 4  # greatest ratio of the even grid's planes along an axis to the uneven one's
 
 EVEN = 1e-6  # tolerance of even planes, as a part of the mean distance

@@ -13,8 +13,6 @@ import numpy.typing as npt
 
 from .volume import RaycastVolume
 
-__all__ = ["gaussian", "smoothed"]
-
 TRUNCATE = 4.0  # standard deviations: beyond them lies 6e-5 of a Gaussian
 
 Floats = npt.NDArray[np.float32]

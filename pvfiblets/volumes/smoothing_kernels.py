@@ -9,8 +9,6 @@ import numpy as np
 
 from pvfiblets.codec.jit import parallel_kernel
 
-__all__ = ["along"]
-
 STRIP = 512  # numbers of a row that are summed together: 4 KB, which stay in the cache
 
 

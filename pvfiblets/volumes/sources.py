@@ -18,8 +18,6 @@ from pvfiblets.support.value_reference import value_reference
 from .smoothing import smoothed
 from .volume import RaycastVolume
 
-__all__ = ["as_raycast_volume"]
-
 _EXPECTED = (
     "a pyvista.ImageData, an (nx, ny, nz) array, an (array, affine) tuple, an image of nibabel, a RaycastVolume or the "
     f"path of one of {', '.join(SUFFIXES)}"

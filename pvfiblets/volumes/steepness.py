@@ -24,8 +24,6 @@ import numpy.typing as npt
 from .transfer import Transfer
 from .volume import RaycastVolume
 
-__all__ = ["DEEP", "KINKS", "OFF", "PARTS", "UNTRUSTED", "allowed_bends", "largest_bend"]
-
 OFF = 1e-2  # largest error of colours and opacities
 
 DEEP = 9.0

@@ -11,8 +11,6 @@ import numpy.typing as npt
 
 from pvfiblets.codec.jit import kernel, parallel_kernel
 
-__all__ = ["tents"]
-
 LEAST = 0.25  # entries: the lowest tent that is tried
 
 

@@ -21,8 +21,6 @@ import numpy.typing as npt
 
 from .volume import RaycastVolume
 
-__all__ = ["LARGEST_DEPTH", "Transfer"]
-
 LARGEST_DEPTH = 24.0 * np.log(2.0)
 """Largest optical depth of one unit, 16.6: there alpha is 1 - 2^-24, which float32 hardly tells from 1. Full opacity
 would take an infinite one."""
@@ -48,28 +46,13 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Transfer:
-    """A transfer function: a table of colours and opacities over an interval of values.
+    """A transfer function: a table of colours and opacities over an interval of values."""
 
-    Parameters
-    ----------
-    table : array_like
-        ``(k, 4)`` RGBA from 0 to 1, k >= 2, kept as float32. Between its entries, which lie evenly over ``clim``, all
-        four are linear; outside the first and last go on.
-    clim : tuple of float
-        ``(low, high)``: values of the first and last entry.
-    unit : float, default: 1
-        Length of the table's opacity, mm. :meth:`over` uses the volume's mean voxel spacing.
-
-    Raises
-    ------
-    ValueError
-        If the table has another shape or numbers outside 0..1, ``clim`` is not finite and increasing, or the unit is
-        not finite and above 0.
-    """
-
+    # ``(k, 4)`` RGBA from 0 to 1, k >= 2, kept as float32. Between its entries, which lie evenly over ``clim``, all
+    # four are linear; outside the first and last go on.
     table: npt.NDArray[np.float32]
-    clim: tuple[float, float]
-    unit: float = 1.0
+    clim: tuple[float, float]  # ``(low, high)``: values of the first and last entry
+    unit: float = 1.0  # Length of the table's opacity, mm. :meth:`over` uses the volume's mean voxel spacing.
 
     def __post_init__(self) -> None:
         table = np.array(self.table, np.float64)

@@ -12,8 +12,6 @@ import numpy.typing as npt
 
 from pvfiblets.support.value_reference import relative, value_reference
 
-__all__ = ["FILTERS", "RaycastVolume"]
-
 FILTERS = ("nearest", "trilinear", "tricubic")  # reconstructions of the field between voxel centres
 
 KEPT = (np.uint8, np.uint16, np.int16, np.float32)

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     Work = Callable[[Progress, Cancel], Any]
 
-__all__ = ["BackgroundWork"]
-
 MOST_WAITING = 16
 LATEST = 0.2  # seconds between two reports of progress
 

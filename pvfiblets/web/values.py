@@ -9,8 +9,6 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-__all__ = ["colour", "mapping", "number", "numbers", "plain", "shown", "text", "truth", "whole"]
-
 LONGEST_TEXT = 256
 _SHOWN = 60
 

@@ -1,5 +1,5 @@
 // The solver alone: where given rays meet given halves, one a pixel, for tests and for the error against run time.
-// pvfiblets/engine/tubes/solver_probe.py moves both to the half's own place and size, as tubes/segment.glsl does.
+// pvfiblets/report/studies/tubes/solver_probe.py moves both to the half's own place and size, as tubes/segment.glsl does.
 
 #version 430
 

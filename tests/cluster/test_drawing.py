@@ -205,7 +205,7 @@ def test_workers_that_all_go_away_are_told(make, brain, client, monkeypatch):
     monkeypatch.setattr(cluster_renderer, "TICK", 0.01)
     with busy(client, parts._workers()):
         parts._ask(VIEW, FibletStyle())
-        monkeypatch.setattr(parts, "_there", list)
+        monkeypatch.setattr(parts, "_present_workers", list)
         with pytest.raises(EngineError, match="no workers; start some, or leave the cluster out"):
             parts.render(VIEW)
 

@@ -8,13 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import pvfiblets as pf
-from pvfiblets.codec import reference
 from pvfiblets.codec.layout import DIRECTION, MAX_POINTS, unpack
-from pvfiblets.codec.turn_reference import cut as reference_cut
-from pvfiblets.codec.turn_reference import may_turn
+from pvfiblets.report.studies.decode.reference import decode_direction, decode_lattice
 from pvfiblets.streamlines import Streamlines
 
+from . import reference
 from .samples import extremes, noisy, smooth, wandering
+from .turn_reference import cut as reference_cut
+from .turn_reference import may_turn
 
 
 def pixel_of(fiblets):
@@ -124,9 +125,9 @@ def decode_by_reference(fiblets):
         codes = np.array(fiblets.codes[at:])
         if kind == DIRECTION:
             length = p.step_lo + step * (p.step_hi - p.step_lo) / 1023 if p.step_hi > p.step_lo else p.step_lo
-            out[first : first + n] = reference.decode_direction(anchor, shape, length, cap, codes, n)
+            out[first : first + n] = decode_direction(anchor, shape, length, cap, codes, n)
         else:
-            out[first : first + n] = reference.decode_lattice(anchor, kind, shape, step, p.lattice * 0.5**cap, codes, n)
+            out[first : first + n] = decode_lattice(anchor, kind, shape, step, p.lattice * 0.5**cap, codes, n)
     return out + fiblets.origin
 
 

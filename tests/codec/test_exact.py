@@ -17,9 +17,9 @@ from pvfiblets.codec.files import exact_file
 from pvfiblets.codec.files.exact_file import FORMS, pack_points, unpack_points
 from pvfiblets.codec.files.fiblets_format import verify_file
 from pvfiblets.codec.layout import MAX_POINTS, PLAIN_POINTS, unpack
-from pvfiblets.codec.reference import decode_lattice
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import read, write
+from pvfiblets.report.studies.decode.reference import decode_lattice
 from pvfiblets.streamlines import Streamlines
 
 from .samples import extremes, noisy, smooth, wandering

@@ -7,7 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pvfiblets.codec import direction_codebook, layout, nearest, reference
+from pvfiblets.codec import direction_codebook, layout, nearest
+
+from . import reference
 
 
 def test_fields_tile_their_words_without_overlap():

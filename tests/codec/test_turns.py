@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import pvfiblets as pf
-from pvfiblets.codec.turn_reference import cut, may_turn
 from pvfiblets.report.studies.codec.errors import direction_angles
 from pvfiblets.streamlines import Streamlines
 
 from .samples import extremes, noisy, smooth, wandering
+from .turn_reference import cut, may_turn
 
 FILES = [
     "dipy_EuDX_small_25.trk", "dipy_hist_tractogram.trk", "dipy_tracks300.trk", "gen_fibercup_det_0.25mm.tck",

@@ -122,7 +122,7 @@ def test_atomics_of_64_bits_need_the_integers_too(extensions, found):
 
 
 def test_this_context_is_described_and_can_compute(gl):
-    found = Capabilities.of(gl)
+    found = Capabilities.from_context(gl)
     assert int(found.version.replace(".", "")) * 10 == gl.version_code
     assert (found.vendor, found.renderer, found.driver) == tuple(
         gl.info[f"GL_{name}"] for name in ("VENDOR", "RENDERER", "VERSION")

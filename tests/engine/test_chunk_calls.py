@@ -37,7 +37,7 @@ def as_on_a_card():
     with (
         patch.object(compute, "is_software", lambda _: False),
         patch.object(textured, "is_software", lambda _: False),
-        patch.object(limits.WorkLimits, "of", lambda _: WorkLimits(layout.PAGE, 1 << 62, 1 << 23)),
+        patch.object(limits.WorkLimits, "from_context", lambda _: WorkLimits(layout.PAGE, 1 << 62, 1 << 23)),
     ):
         yield
 

@@ -122,7 +122,7 @@ def test_several_chunks(both, fabricate, random_lines, camera, low):
 
 
 def test_planes_filters_and_slots(both, brain, camera, monkeypatch):
-    monkeypatch.setattr(WorkLimits, "of", classmethod(lambda cls, ctx: cls(1 << 20, 1 << 62, 1000)))
+    monkeypatch.setattr(WorkLimits, "from_context", classmethod(lambda cls, ctx: cls(1 << 20, 1 << 62, 1000)))
     pair = both(brain)
     assert pair.culled._pipeline._marks[0].slots > 10
     rng = np.random.default_rng(3)

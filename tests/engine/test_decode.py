@@ -6,11 +6,12 @@ import moderngl
 import numpy as np
 import pytest
 
-from pvfiblets.codec import layout, reference
+from pvfiblets.codec import layout
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.data.chunks import storage_buffer
 from pvfiblets.engine.frame import FRAME_BLOCK
 from pvfiblets.engine.gl.shaders import assemble
+from pvfiblets.report.studies.decode import reference
 
 SEQUENTIAL = """
 #version 430

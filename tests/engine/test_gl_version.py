@@ -25,7 +25,7 @@ points = np.cumsum(rng.normal(0.0, 1.0, (40, 50, 3)), axis=1).reshape(-1, 3)
 fiblets = compress(Streamlines(points, np.arange(0, 2001, 50)))
 print(ctx.version_code, gl_version.version_of(ctx))
 renderer = FibletRenderer(ctx, fiblets)
-print(renderer.pipeline, capabilities.Capabilities.of(ctx).version)
+print(renderer.pipeline, capabilities.Capabilities.from_context(ctx).version)
 buffer = renderer.render(View((160, 120), render_checks.camera((160, 120), eye=(0, -90, 30))))
 np.save(sys.argv[2], np.frombuffer(buffer.depth.read(), "u4"))
 assert ctx.error == "GL_NO_ERROR"

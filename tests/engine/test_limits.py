@@ -60,7 +60,7 @@ def test_no_buffer_is_so_large_that_shaders_could_miscount(gl, monkeypatch):
     """Whatever a driver allows: beyond 2^31 bytes of codes a chunk might have more than 2^32 points."""
     monkeypatch.setattr(limits.GLExtras, "get_integer", lambda self, name: 2**32 - 1)
     for pipeline in ("compute", "mesh", "tessellation", "geometry"):
-        asked = limits.Limits.of(gl, limits.GLExtras(gl), pipeline, None, None)
+        asked = limits.Limits.from_context(gl, limits.GLExtras(gl), pipeline, None, None)
         assert asked.buffer_bytes == limits.LARGEST < 2**31
     # Of N points a fiblet has N - 2 bytes of codes or more, and 12 of its record: two points without codes are worst.
     for points in range(1, 61):
@@ -201,7 +201,8 @@ def test_lists_are_cut_into_calls_of_few_fiblets(gl, several_pages, camera, monk
     """One chunk, drawn by many calls: no picture shows it, and no call has more fiblets than it may have."""
     pictures = []
     for most in (1 << 31, 1000):
-        monkeypatch.setattr(WorkLimits, "of", classmethod(lambda cls, ctx, most=most: cls(1 << 20, 1 << 62, most)))
+        few = WorkLimits(1 << 20, 1 << 62, most)
+        monkeypatch.setattr(WorkLimits, "from_context", classmethod(lambda cls, ctx, few=few: few))
         made = FibletRenderer(gl, several_pages)
         views = [View(SIZE, camera(SIZE, eye=eye)) for eye in ((0, -260, 60), (40, -250, 60), (0, -60, 10))]
         pictures.append([read(made.render(view, FibletStyle())) for view in views])

@@ -162,9 +162,9 @@ def test_streamlines_of_very_different_lengths(gl, place):
 
 
 def test_more_fiblets_than_can_be_marked(gl, brain, monkeypatch):
-    honest = Limits.of
+    honest = Limits.from_context
     few = brain.n_fiblets // 3
-    monkeypatch.setattr(renderer.Limits, "of", lambda *a: replace(honest(*a), marks=few))
+    monkeypatch.setattr(renderer.Limits, "from_context", lambda *a: replace(honest(*a), marks=few))
     with pytest.raises(EngineError, match=f"fiblets are more than the {few} whose marks fit into this OpenGL's larg"):
         FibletRenderer(gl, brain)
     made = FibletRenderer(gl, brain, fit="sample")

@@ -317,9 +317,9 @@ def test_marks_fit_textures_of_any_limit(gl):
 @pytest.mark.parametrize("pipeline", RASTER)
 def test_limits_are_those_of_textures(gl, fabricate, random_lines, pipeline, monkeypatch):
     functions = GLExtras(gl)
-    limits = Limits.of(gl, functions, pipeline, None, None)
+    limits = Limits.from_context(gl, functions, pipeline, None, None)
     assert limits.buffer_bytes <= 4 * functions.get_integer("GL_MAX_TEXTURE_BUFFER_SIZE")
-    assert Limits.of(gl, functions, pipeline, 1000, None).buffer_bytes == 1000
+    assert Limits.from_context(gl, functions, pipeline, 1000, None).buffer_bytes == 1000
     fiblets = fabricate(random_lines(20), kind=2)
     monkeypatch.setattr(GLExtras, "get_integer", lambda self, name: 4 if name == "GL_MAX_TEXTURE_SIZE" else 65536)
     with pytest.raises(EngineError, match=r"\d+ fiblets are more than the 16 .* largest texture"):

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import strategies as st
 
 from pvfiblets.engine.tubes import SOLVERS
-from pvfiblets.engine.tubes.solver_probe import SolverProbe
 from pvfiblets.report.studies.tubes.rays import of_class
 from pvfiblets.report.studies.tubes.reference import CAP, ENTRY, EXIT, Hits, hits, surface_distance
+from pvfiblets.report.studies.tubes.solver_probe import SolverProbe
 from pvfiblets.tubes.curves import sample_spheres
 
 from .tubes import KINDS, grazing, halves, rays_past, unit

@@ -40,7 +40,7 @@ def look_at(camera, volume, eye=(1.1, -1.7, 0.8)):
 
 def drawn(gl, monkeypatch, volume, casting, matrix, limits, shading=None, occlusion=False):
     """Depth keys, values and colours; and how open surfaces are."""
-    monkeypatch.setattr(textures.Limits, "of", classmethod(lambda cls, ctx: limits))
+    monkeypatch.setattr(textures.Limits, "from_context", classmethod(lambda cls, ctx: limits))
     renderer = VolumeRenderer(gl, volume)
     try:
         view = View(SIZE, matrix)
@@ -194,7 +194,7 @@ def test_every_voxel_lies_where_it_is_read():
 
 def test_what_no_textures_take_is_one_error(gl, monkeypatch):
     volume = RaycastVolume(smooth((40, 40, 40)))
-    monkeypatch.setattr(textures.Limits, "of", classmethod(lambda cls, ctx: textures.Limits(16, 16, 16)))
+    monkeypatch.setattr(textures.Limits, "from_context", classmethod(lambda cls, ctx: textures.Limits(16, 16, 16)))
     with pytest.raises(EngineError, match=r"40 x 40 x 40 voxels is more than 8 of this OpenGL's textures take"):
         VolumeRenderer(gl, volume)
 

@@ -38,7 +38,7 @@ CARDS = {
 @pytest.mark.parametrize("name", CARDS)
 def test_cards_are_known_by_their_names(name):
     vendor, renderer = name.split(" | ")
-    assert WorkLimits.of(SimpleNamespace(info={"GL_VENDOR": vendor, "GL_RENDERER": renderer})) is CARDS[name]
+    assert WorkLimits.from_context(SimpleNamespace(info={"GL_VENDOR": vendor, "GL_RENDERER": renderer})) is CARDS[name]
 
 
 @pytest.mark.parametrize("samples", [1.0, 700.0, 1e9])
@@ -55,8 +55,8 @@ def test_bands_cover_a_picture_and_are_small_enough(samples):
 @pytest.mark.parametrize("pipeline", ["compute", "tessellation", "geometry"])
 def test_chunks_are_no_larger_than_a_call_may_be(gl, monkeypatch, pipeline):
     for card in (INTEGRATED, DISCRETE):
-        monkeypatch.setattr(WorkLimits, "of", classmethod(lambda cls, ctx, card=card: card))
-        limits = Limits.of(gl, GLExtras(gl), pipeline, 2**31 - 4, None)
+        monkeypatch.setattr(WorkLimits, "from_context", classmethod(lambda cls, ctx, card=card: card))
+        limits = Limits.from_context(gl, GLExtras(gl), pipeline, 2**31 - 4, None)
         plans = plan_chunks(imagined(40_000_000, 58, 60), limits.buffer_bytes, limits.fiblets)
         sizes = [plan.fiblets[1] - plan.fiblets[0] for plan in plans]
         assert sum(sizes) == 40_000_000
@@ -78,7 +78,7 @@ def test_rays_of_many_samples_are_cast_band_by_band(gl, monkeypatch, camera, spa
     pictures, calls = [], []
     for samples in (1 << 62, 100_000):
         limits = WorkLimits(1, samples)
-        monkeypatch.setattr(WorkLimits, "of", classmethod(lambda cls, ctx, limits=limits: limits))
+        monkeypatch.setattr(WorkLimits, "from_context", classmethod(lambda cls, ctx, limits=limits: limits))
         renderer = VolumeRenderer(gl, volume)
         honest = WorkLimits.bands
         monkeypatch.setattr(

@@ -12,7 +12,7 @@ from pvfiblets import bundles, compress, connectome, density, read_volume, regio
 from pvfiblets.errors import FormatError
 from pvfiblets.images.image import Image
 from pvfiblets.images.sources import as_image, is_image
-from pvfiblets.plotting.fiblets.volume_sources import as_volume
+from pvfiblets.plotting.fiblets.sources import as_volume
 from pvfiblets.plotting.region_sources import as_region
 from pvfiblets.query.density.voxel_grid import grid_like
 from pvfiblets.query.painting.painter import RegionPainter

@@ -221,7 +221,8 @@ def test_nothing_is_left_of_a_refused_call(plotter, atlas):
         ({"node_radius": [1, 2]}, ValueError, "node_radius is"),
         ({"names": ["a"]}, ValueError, "1 names for 4 nodes"),
         ({"cmap": "nothing"}, ValueError, "cmap is 'nothing'"),
-        ({"line_width": 3}, TypeError, "add_connectome\\(\\) got an unexpected keyword argument 'line_width'"),
+        ({"line_width": 3}, TypeError, "add_connectome\\(\\) takes no line_width: radius"),
+        ({"show_edges": True}, TypeError, "add_connectome\\(\\) got an unexpected keyword argument 'show_edges'"),
     ]:
         with pytest.raises(kind, match=message):
             plotter.add_connectome(WEIGHTS, PLACES, **given)

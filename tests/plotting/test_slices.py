@@ -231,6 +231,10 @@ def test_slices_of_a_tilted_image_may_lie_along_its_own_axes(plotter):
     ],
 )  # fmt: skip
 def test_bad_arguments_are_refused_and_nothing_is_left_behind(plotter, arguments, said):
+    with pytest.raises(TypeError, match=r"add_slices\(\) takes no colormap: give cmap"):
+        plotter.add_slices(np.ones((5, 5, 5)), colormap="hot")
+    with pytest.raises(TypeError, match=r"add_slices\(\) got an unexpected keyword argument 'texture'"):
+        plotter.add_slices(np.ones((5, 5, 5)), texture=None)
     with pytest.raises(ValueError, match=said):
         plotter.add_slices(np.ones((5, 5, 5)), **arguments)
     for source, more, error, told in (

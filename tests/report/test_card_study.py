@@ -217,7 +217,7 @@ def test_a_refused_form_is_reported(gl, monkeypatch):
     for features, setting in ((["MESH_EXT"], ""), (["PER_PRIMITIVE"], f" refused, drawn by {card.MESH}")):
         row["features"] = features
         done = card.measured({**cell, "folder": ""}, CellProcess([]), set(), little())
-        (record,) = card._told(*done, cell, {})
+        (record,) = card._completed(*done, cell, {})
         assert record.setting == f"culling two-phase, {card.MESH_EXT}{setting}"
         assert record.costs["clocks.sm"].value == 1980.0
         assert record.times["GPU"].median == pytest.approx(0.15)

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from pvfiblets import formats
-from pvfiblets.codec.reference import first_frame
 from pvfiblets.report.record import LeftOut
 from pvfiblets.report.studies.codec import data_sets
 from pvfiblets.report.studies.culling import study as culling
 from pvfiblets.report.studies.culling.flights import Flight
 from pvfiblets.report.studies.culling.pictures import Visible, averaged, colours, difference, directions, errors, views
+from pvfiblets.report.studies.decode.reference import first_frame
 from pvfiblets.report.study import Budget
 
 from .little import little

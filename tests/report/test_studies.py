@@ -10,7 +10,6 @@ import pytest
 
 from pvfiblets import formats
 from pvfiblets.codec.compress import compress
-from pvfiblets.codec.reference import encode_direction
 from pvfiblets.report import drawing, run, studies, timing
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record
 from pvfiblets.report.report_file import Report
@@ -18,8 +17,10 @@ from pvfiblets.report.studies.codec import data_sets
 from pvfiblets.report.studies.codec import study as codec
 from pvfiblets.report.studies.decode import decoders
 from pvfiblets.report.studies.decode import study as decode
+from pvfiblets.report.studies.decode.reference import first_frame
 from pvfiblets.report.study import Budget, Options, Unavailable
 from pvfiblets.streamlines import Streamlines
+from tests.codec.reference import encode_direction
 
 
 def quiet(_):
@@ -171,8 +172,6 @@ def test_what_codes_mean_is_what_the_codec_decodes():
     rng = np.random.default_rng(0)
     points = np.cumsum(0.2 * np.array([1.0, 0.0, 0.0]) + rng.normal(0.0, 0.01, (60, 3)), axis=0)
     piece = encode_direction(points, points[0], 0, 0.2, 9)
-    from pvfiblets.codec.reference import first_frame
-
     made = decode.Made(points[None, 0], first_frame(piece.shape)[1][None], piece.codes[None], 9, 0.2)
     assert np.abs(decode.exact(made)[0] - piece.points).max() < 1e-12
 

@@ -182,7 +182,7 @@ def test_normals_are_turned_towards_the_eye_and_directions_unpacked():
     away = np.array([[0.0, 0.0, 2.0], [0.0, 3.0, -3.0], [np.nan] * 3])
     shine = volumes_scene.lit(away, np.array([[0.0, 0.0, 1.0]] * 3), np.array([0.0, 0.0, -1.0]))
     np.testing.assert_allclose(shine[:, 0], [1.0, math.sqrt(0.5), 0.0])
-    from pvfiblets.codec.reference import pack_direction
+    from tests.codec.reference import pack_direction
 
     ways = np.concatenate([np.random.default_rng(0).normal(size=(256, 3)), np.eye(3), -np.eye(3)])
     found = directions(np.array([pack_direction(way) for way in ways], np.uint32))

@@ -18,7 +18,7 @@ from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 from pvfiblets.errors import FormatError
 from pvfiblets.images.metaimage import read_metaimage
 from pvfiblets.images.nrrd import read_nrrd
-from pvfiblets.plotting.fiblets.volume_sources import as_volume
+from pvfiblets.plotting.fiblets.sources import as_volume
 from pvfiblets.volumes import RaycastVolume, as_raycast_volume
 
 from .small_volume import AFFINE, AXES, ORIGIN, SHAPE, SPACING, VALUES, assert_is_the_volume, image

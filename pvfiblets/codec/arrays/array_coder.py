@@ -15,8 +15,6 @@ from . import direction_arrays, lattice_arrays, turn_arrays
 if TYPE_CHECKING:
     from ..parameters import Parameters
 
-__all__ = ["ArrayCoder"]
-
 Ints = npt.NDArray[np.int64]
 
 

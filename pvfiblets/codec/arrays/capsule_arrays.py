@@ -8,8 +8,6 @@ import numpy.typing as npt
 from ..capsules import MARGIN
 from ..layout import END_LEVELS, pack_ends
 
-__all__ = ["capsules"]
-
 Array = npt.NDArray[np.float64]
 
 

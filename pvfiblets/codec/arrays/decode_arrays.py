@@ -10,8 +10,6 @@ import numpy.typing as npt
 from ..layout import DIRECTION, PAGE_BITS, PLAIN_BYTES, STEP_LEVELS, WIDE, WIDE_HEADER, unpack
 from .frame_arrays import first_frames, turn, turned_x
 
-__all__ = ["decode"]
-
 BATCH = 2048  # fiblets at once
 LARGEST_WIDTH = 7  # bytes of a code, in damaged records
 

@@ -18,8 +18,6 @@ from .capsule_arrays import capsules
 from .frame_arrays import first_frames, signs, turn, turned_x
 from .turn_arrays import Turning, excess
 
-__all__ = ["anchors_of", "encode_directions", "pack_directions"]
-
 BATCH = 512  # slots at once: the codebooks of their caps take 3 MiB
 TRIES = 3  # cap angles
 
@@ -35,7 +33,7 @@ def anchors_of(relative: Array, scale: Array, top: float) -> Array:
 
 
 def pack_directions(d: Array) -> npt.NDArray[np.int64]:
-    """See :func:`.reference.pack_direction`; of vectors ``(3, k)``."""
+    """Quantise vectors ``(3, k)`` to two snorm16 on the octahedron about +x."""
     x, y, z = d
     norm = np.abs(x) + np.abs(y) + np.abs(z)
     still = norm == 0.0
@@ -115,7 +113,7 @@ class _Batch:
                 self._try(some, smallest[some] + wider, step[some])
 
     def _step_indices(self, n: int, lo: float, hi: float) -> Array:
-        """See :func:`.reference.choose_step`."""
+        """Index of each fiblet's step between the file's least and greatest."""
         arc = np.zeros(n)
         for i in range(1, len(self.true)):
             d = self.true[i, :, :n] - self.true[i - 1, :, :n]
@@ -125,7 +123,7 @@ class _Batch:
         return index
 
     def _smallest_caps(self, n: int) -> npt.NDArray[np.int64]:
-        """See :func:`.reference.choose_cap`."""
+        """Index of the smallest cap angle that holds every turn of the points."""
         least = np.ones(n)
         for i in range(2, len(self.true)):
             a = self.true[i - 1, :, :n] - self.true[i - 2, :, :n]

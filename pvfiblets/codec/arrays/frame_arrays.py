@@ -7,13 +7,11 @@ import numpy.typing as npt
 
 from ..layout import DIRECTION_SCALE
 
-__all__ = ["first_frames", "signs", "turn", "turned_x"]
-
 Array = npt.NDArray[np.float64]
 
 
 def first_frames(words: npt.NDArray[np.int64]) -> tuple[Array, Array]:
-    """First directions ``(3, k)`` and frames ``(4, k)``; see :func:`.reference.first_frame`."""
+    """First directions ``(3, k)`` and frames ``(4, k)`` of fiblets (the paper's ``M_0``)."""
     iu, iv = words & 0xFFFF, (words >> 16) & 0xFFFF
     iu, iv = np.where(iu >= 0x8000, iu - 0x10000, iu), np.where(iv >= 0x8000, iv - 0x10000, iv)
     u, v = iu / DIRECTION_SCALE, iv / DIRECTION_SCALE

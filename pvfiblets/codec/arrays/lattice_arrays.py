@@ -12,13 +12,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..lattice_limits import LATTICE_LIMIT, MAX_HALVINGS, RECORD_BYTES, TREE_DEPTH, TURNED_TOO_FAR
 from ..layout import DIRECTION, LATTICE8, WIDE, WIDE_HEADER
-from ..reference import LATTICE_LIMIT, MAX_HALVINGS, RECORD_BYTES, TREE_DEPTH, TURNED_TOO_FAR
 from .capsule_arrays import capsules
 from .direction_arrays import anchors_of
 from .turn_arrays import Turning, excess
-
-__all__ = ["encode_lattices", "plan_lattices"]
 
 BATCH = 1024  # slots, or parts that are coded, at once
 NONE = 1 << 30  # bytes, where no kind holds the steps
@@ -123,7 +121,7 @@ def _sizes(found: Ints, counts: Ints) -> Ints:
 def plan_lattices(
     source: Source, slots: Ints, leads: npt.NDArray[np.bool_]
 ) -> tuple[Ints, Ints, npt.NDArray[np.uint8]]:
-    """Cheapest splits of slots ``(k, 2)`` by repeated halving; see :func:`.reference.plan_lattice`."""
+    """Cheapest splits of slots ``(k, 2)`` by repeated halving."""
     plans = [_plan(source, slots[a : a + BATCH], leads[a : a + BATCH]) for a in range(0, len(slots), BATCH)]
     pieces, size, cuts = (np.concatenate(parts) for parts in zip(*plans, strict=True))
     return pieces, size, cuts

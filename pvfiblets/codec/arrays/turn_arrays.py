@@ -1,4 +1,4 @@
-"""Cuts of streamlines and greatest turns of segments, for all points at once; see `turn_reference`.
+"""Cuts of streamlines and greatest turns of segments, for all points at once; see `tangents`.
 
 NumPy and nothing else, in the arithmetic of `turn_kernels`: sets that are too small to load a compiler for.
 """
@@ -13,10 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..layout import MAX_POINTS
-from ..tangents import LEAST_SUM, ONE_POINT
-from ..turn_reference import FIRST_SHARE, LOOK_BACK
-
-__all__ = ["Turning", "cut", "excess", "turning", "units_of"]
+from ..tangents import FIRST_SHARE, LEAST_SUM, LOOK_BACK, ONE_POINT
 
 Array = npt.NDArray[np.float64]
 
@@ -88,7 +85,7 @@ def _size(vectors: Array) -> Array:
 def cut(
     offsets: npt.NDArray[np.int64], bends: Array, bound: tuple[float, ...]
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """Slots of at most 60 points; see :func:`.turn_reference.cut`."""
+    """Slots of at most 60 points."""
     starts, stops = offsets[:-1].copy(), offsets[1:]
     per = np.zeros(len(starts), np.int64)
     lines = np.flatnonzero(stops > starts)

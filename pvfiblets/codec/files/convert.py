@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Literal
@@ -18,7 +18,7 @@ from ... import formats
 from ...errors import FormatError
 from ...streamlines import Streamlines
 from ...support.memory import fits
-from ...support.unfinished import remove_unfinished, scratch_beside
+from ...support.unfinished import remove_unfinished, scratch_folder_for
 from ...support.whole_files import naming_target
 from .. import parameters as limits
 from ..compress import (
@@ -45,9 +45,7 @@ from .fiblets_file import CORE, OPTIONAL, index_members, make_header
 from .file_error import compare_file
 
 if TYPE_CHECKING:
-    from ..encode import Effort
-
-__all__ = ["compress_file"]
+    from ..encode import Effort, Encoder
 
 SAMPLE_POINTS = 1_000_000  # compared points of a large file, about
 
@@ -138,23 +136,12 @@ def compress_file(
         for chunk in formats.iter_chunks(source, CHUNK_POINTS):
             yield chunk if promise is None or step == "auto" else resample(chunk, step, CUT_SHARE * promise)
 
-    found = Survey()
-    raw, small = 0, []  # all chunks, while they are few enough to be kept exactly
-    names: tuple[str, ...] = ()
-    behind: dict[str, int] = {}
-    for n, chunk in enumerate(shown(chunks(), None, "surveying", progress)):
-        if n == 0:  # all chunks of a file have the same arrays
-            names = choose_per_point(chunk, per_point, per_point_bits)
-            behind = not_kept(chunk, names)
-        found.add(chunk, names)
-        raw += raw_bytes(chunk)
-        small.append(chunk)
-        if not exact and raw >= limits.EXACT_BELOW:
-            small.clear()
+    first = _survey(shown(chunks(), None, "surveying", progress), per_point, per_point_bits, bool(exact))
+    found, names, raw = first.found, first.names, first.raw
     plain = is_plain(step, max_error, max_angle, effort, order)
     if exact or (exact is None and plain and raw < limits.EXACT_BELOW):
-        return _keep_exactly(small, target, names, started)
-    small.clear()
+        return _keep_exactly(first.small, target, names, started)
+    first.small.clear()
     from ..encode import Encoder  # which needs a compiler
 
     if promise is None or step == "auto":
@@ -166,20 +153,12 @@ def compress_file(
     spooled = [0]
     with (
         naming_target(target, lambda: 2 * spooled[0]),  # once in parts, once put together
-        scratch_beside(Path(target)) as scratch,
+        scratch_folder_for(Path(target)) as scratch,
         closing(_Spool(scratch, spooled)) as spool,  # before its folder goes, whatever happens
     ):
-        whole = _Whole(behind)
+        whole = _Whole(first.behind)
         for chunk in shown(chunks(), found.n_points, "compressing", progress):
-            for records in encoder.parts(chunk):
-                for name in ("anchors", "decoding", "reach", "codes", "ends", "anchors_low"):
-                    if getattr(records, name) is not None:
-                        spool.add(f"{name}.npy", getattr(records, name))
-            for name, column in value_columns(chunk, names):
-                values = coders[name].code(column)
-                spool.add(name, values.codes)
-                whole.add_values(name, values)
-            whole.add(chunk)
+            _code(chunk, encoder, coders, names, spool, whole)
         spool.close()
         # To keep them as they are, all are in memory at once, and their records.
         if exact is None and step == "auto" and grows(encoder, raw) and fits(6 * raw):
@@ -192,24 +171,9 @@ def compress_file(
         if ids is not None:
             spool.add("rank_to_id.npy", ids)
         spool.close()
-        header_set = FibletSet(
-            parameters=encoder.parameters if promise is None else replace(encoder.parameters, promise=promise),
-            anchors=np.empty((encoder.n_fiblets, 0), np.uint32),
-            decoding=np.empty((0, WORDS["decoding"]), np.uint32),
-            reach=np.empty(0, np.uint16),
-            codes=np.empty(0, np.uint8),
-            ends=np.empty(0, np.uint32),
-            pages=pages,
-            bounds=bounds_of(found),
-            n_streamlines=encoder.n_streamlines,
-            per_point=whole.per_point,
-            per_streamline={k: np.concatenate(v) for k, v in whole.per_streamline.items()},
-            groups={k: np.concatenate(v) for k, v in whole.groups.items()},
-            per_group=whole.per_group,
-            affine=whole.affine,
-            space=whole.space,
-            dropped=whole.dropped,
-        )
+        if promise is not None:
+            encoder.parameters = replace(encoder.parameters, promise=promise)
+        header_set = whole.without_records(encoder, pages, found)
         members = spool.members()
         header, more = make_header(header_set, {k: members.pop(k) for k in whole.per_point})
         if prepare is not None:
@@ -238,6 +202,51 @@ def compress_file(
         "per_point": list(whole.per_point),
         "exact": False,
     }
+
+
+@dataclass
+class _Surveyed:
+    """What the first reading of a file finds."""
+
+    found: Survey = field(default_factory=Survey)
+    raw: int = 0  # bytes of its streamlines as they are
+    small: list[Streamlines] = field(default_factory=list)  # all chunks, while they are few enough to be kept exactly
+    names: tuple[str, ...] = ()  # of the arrays that are kept
+    behind: dict[str, int] = field(default_factory=dict)  # arrays that are not
+
+
+def _survey(chunks: Iterable[Streamlines], per_point: PerPoint, bits: int, exact: bool) -> _Surveyed:
+    first = _Surveyed()
+    for n, chunk in enumerate(chunks):
+        if n == 0:  # all chunks of a file have the same arrays
+            first.names = choose_per_point(chunk, per_point, bits)
+            first.behind = not_kept(chunk, first.names)
+        first.found.add(chunk, first.names)
+        first.raw += raw_bytes(chunk)
+        first.small.append(chunk)
+        if not exact and first.raw >= limits.EXACT_BELOW:
+            first.small.clear()
+    return first
+
+
+def _code(
+    chunk: Streamlines,
+    encoder: Encoder,
+    coders: Mapping[str, ValueCoder],
+    names: Sequence[str],
+    spool: _Spool,
+    whole: _Whole,
+) -> None:
+    """Code the next streamlines, records to a spool and all else to the whole."""
+    for records in encoder.parts(chunk):
+        for name in ("anchors", "decoding", "reach", "codes", "ends", "anchors_low"):
+            if getattr(records, name) is not None:
+                spool.add(f"{name}.npy", getattr(records, name))
+    for name, column in value_columns(chunk, names):
+        values = coders[name].code(column)
+        spool.add(name, values.codes)
+        whole.add_values(name, values)
+    whole.add(chunk)
 
 
 def _keep_exactly(
@@ -301,6 +310,27 @@ class _Whole:
         for reason, count in chunk.dropped.items():
             self.dropped[reason] = self.dropped.get(reason, 0) + int(count)
         self.n += len(chunk)
+
+    def without_records(self, encoder: Encoder, pages: npt.NDArray[Any], found: Survey) -> FibletSet:
+        """Return the set of all that stands in a header: its arrays of records are empty."""
+        return FibletSet(
+            parameters=encoder.parameters,
+            anchors=np.empty((encoder.n_fiblets, 0), np.uint32),
+            decoding=np.empty((0, WORDS["decoding"]), np.uint32),
+            reach=np.empty(0, np.uint16),
+            codes=np.empty(0, np.uint8),
+            ends=np.empty(0, np.uint32),
+            pages=pages,
+            bounds=bounds_of(found),
+            n_streamlines=encoder.n_streamlines,
+            per_point=self.per_point,
+            per_streamline={k: np.concatenate(v) for k, v in self.per_streamline.items()},
+            groups={k: np.concatenate(v) for k, v in self.groups.items()},
+            per_group=self.per_group,
+            affine=self.affine,
+            space=self.space,
+            dropped=self.dropped,
+        )
 
     def add_values(self, name: str, values: PointValues) -> None:
         """Remember a per-point array's table and errors, not its codes."""

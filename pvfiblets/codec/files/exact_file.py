@@ -23,8 +23,6 @@ import numpy.typing as npt
 from ...errors import FormatError
 from ...support.memory import check_room
 
-__all__ = ["FORMS", "pack_points", "unpack_points"]
-
 FORMS = 3
 DENSEST = 1032  # bytes of deflate's that come out of one, at most
 _TRIED = 1 << 18  # points that each form is tried on

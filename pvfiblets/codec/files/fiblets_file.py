@@ -32,10 +32,6 @@ from .exact_file import pack_points, unpack_points
 if TYPE_CHECKING:
     from ..fibletset import FibletSet
 
-__all__ = [
-    "CORE", "OPTIONAL", "VERSION", "index_bytes", "index_members", "is_sharded", "make_header", "open_fiblets", "save",
-]  # fmt: skip
-
 VERSION = 3
 OF_CODES = 2
 """Version of files that hold records and codes, which older programs read too; that of exact sets is `VERSION`."""

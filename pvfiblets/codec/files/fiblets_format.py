@@ -68,7 +68,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
         "promise_mm": f.points_promise,
         "promise_pixels": _pixels(f.points_promise, f.bounds),
         "bounds_mm": list(f.bounds),
-        "per_point": {k: {"min": v.lo, "max": v.hi, **_kept(v)} for k, v in f.per_point.items()},
+        "per_point": {k: {"min": v.lo, "max": v.hi, **_errors_and_type(v)} for k, v in f.per_point.items()},
         "per_streamline": sorted(f.per_streamline),
         "groups": {k: len(v) for k, v in f.groups.items()},
         "affine": f.affine.tolist(),
@@ -76,7 +76,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
     }
 
 
-def _kept(values: PointValues) -> dict[str, Any]:
+def _errors_and_type(values: PointValues) -> dict[str, Any]:
     return {"max_error": values.max_error, "mean_error": values.mean_error, "type": values.dtype.name}
 
 

@@ -11,8 +11,6 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from ..fibletset import FibletSet
 
-__all__ = ["in_parts", "of_streamlines", "stored_parts"]
-
 Ints = npt.NDArray[np.int64]
 
 

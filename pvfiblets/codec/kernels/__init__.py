@@ -1,4 +1,4 @@
 """The codec's compiled kernels, and the distance of points from lines.
 
-They know arrays only; ``codec/reference.py`` explains fiblets. Start with ``direction_kernels.py``.
+They know arrays only; ``codec/layout.py`` explains fiblets. Start with ``direction_kernels.py``.
 """

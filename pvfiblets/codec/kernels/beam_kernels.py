@@ -32,8 +32,6 @@ from .direction_kernels import (
 )
 from .turn_kernels import excess, may_turn
 
-__all__ = ["encode_directions", "neighbours"]
-
 WIDTH = 6  # partial codings kept
 BRANCH = 5  # continuations tried from each: the nearest code and four of its neighbours
 

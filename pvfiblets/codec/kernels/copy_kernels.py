@@ -15,8 +15,6 @@ import numpy as np
 from ..jit import parallel_kernel
 from ..layout import PAGE_BITS
 
-__all__ = ["copy_anchors", "copy_codes", "copy_decoding", "copy_reach"]
-
 
 @parallel_kernel
 def copy_anchors(

@@ -1,4 +1,4 @@
-"""Compiled kernels: fiblets to points, in parallel, in the arithmetic of `reference`."""
+"""Compiled kernels: fiblets to points, in parallel."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ import numpy as np
 from ..jit import kernel, parallel_kernel
 from ..layout import DIRECTION, PAGE_BITS, PLAIN_BYTES, STEP_LEVELS, WIDE, WIDE_HEADER
 from .direction_kernels import first_frame, turn
-
-__all__ = ["decode", "decode_one"]
 
 BLOCK = 256  # fiblets a thread decodes in one go
 

@@ -1,6 +1,7 @@
-"""Compiled kernels: direction codes in closed loop, and decoding. Same arithmetic as `reference`, in parallel.
+"""Compiled kernels: direction codes in closed loop, and decoding.
 
-Nothing here uses fast-math, and sums stand in the reference's order, so that codes agree with it bit for bit.
+Every code aims from the *decoded* previous point, in the decoded frame, at the true next point, so that errors do not
+add up. Nothing here uses fast-math, so that codes are those of a literal reference in the tests, bit for bit.
 Points are float32 or float64 arrays in mm; the origin is taken off in float64 as they are read.
 """
 
@@ -17,18 +18,6 @@ from ..layout import DIRECTION_SCALE, MAX_POINTS, STEP_LEVELS
 from ..nearest import CELLS, EXTENT
 from .capsule_kernels import capsule
 from .turn_kernels import excess, may_turn, within
-
-__all__ = [
-    "anchor_of",
-    "encode_directions",
-    "first_frame",
-    "follows",
-    "pack_direction",
-    "quantise",
-    "scan",
-    "take_points",
-    "turn",
-]
 
 BLOCK = 64  # slots that share one thread's scratch
 _CELL = CELLS / (2.0 * EXTENT)
@@ -105,7 +94,7 @@ def turn(w: float, x: float, y: float, z: float, t: Any) -> Any:
 
 @kernel
 def pack_direction(x: float, y: float, z: float) -> int:
-    """See :func:`.reference.pack_direction`."""
+    """Quantise a vector to two snorm16 on the octahedron about +x."""
     if x == 0.0 and y == 0.0 and z == 0.0:
         x = 1.0
     norm = abs(x) + abs(y) + abs(z)
@@ -122,7 +111,7 @@ def pack_direction(x: float, y: float, z: float) -> int:
 
 @kernel
 def first_frame(word: int) -> Any:
-    """First direction and frame ``(dx, dy, dz, w, x, y, z)``; see :func:`.reference.first_frame`."""
+    """First direction and frame ``(dx, dy, dz, w, x, y, z)`` of a fiblet (the paper's ``M_0``, section 3.3.2)."""
     iu = word & 0xFFFF
     iv = (word >> 16) & 0xFFFF
     if iu >= 0x8000:
@@ -224,7 +213,7 @@ def _greedy(true: Any, n: int, step: float, cap: int, give_up: float, tables: An
 
 @kernel
 def _smallest_cap(true: Any, n: int, ratios: Any) -> int:
-    """See :func:`.reference.choose_cap`."""
+    """Index of the smallest cap angle that holds every turn of the points."""
     least = 1.0
     for i in range(2, n):
         ax = true[i - 1, 0] - true[i - 2, 0]
@@ -242,7 +231,7 @@ def _smallest_cap(true: Any, n: int, ratios: Any) -> int:
 
 @kernel
 def _step_index(true: Any, n: int, lo: float, hi: float) -> int:
-    """See :func:`.reference.choose_step`."""
+    """Index of a fiblet's step between the file's least and greatest."""
     if hi <= lo:
         return 0
     arc = 0.0

@@ -1,4 +1,4 @@
-"""Compiled kernels: splitting and coding of fiblets on the integer lattice. Same arithmetic as `reference`."""
+"""Compiled kernels: splitting and coding of fiblets on the integer lattice."""
 
 from __future__ import annotations
 
@@ -9,19 +9,13 @@ import numba
 import numpy as np
 
 from ..jit import kernel, parallel_kernel
+from ..lattice_limits import LATTICE_LIMIT, MAX_HALVINGS, RECORD_BYTES, TREE_DEPTH, TURNED_TOO_FAR
 from ..layout import DIRECTION, LATTICE8, MAX_POINTS, WIDE, WIDE_HEADER
 from .capsule_kernels import capsule
 from .direction_kernels import follows, quantise, take_points
 from .turn_kernels import excess, may_turn
 
-__all__ = ["encode_lattices", "plan_lattices"]
-
-RECORD_BYTES = 22
-LATTICE_LIMIT = 2.0**30
-MAX_HALVINGS = 15
-TREE_DEPTH = 6
 NONE = 1 << 30
-TURNED_TOO_FAR = 1 << 16  # bytes: any split that turns fewer segments too far is better
 _NODES = 1 << (TREE_DEPTH + 1)
 
 
@@ -189,7 +183,7 @@ def plan_lattices(
 ) -> None:
     """Plan the slots named in ``wanted``."""
     # Fills `pieces (k,)` and `size (k,)` (bytes of codes) and, where a slot's points stand in `cuts (n_points,)`, the
-    # numbers of points of its pieces. See `.reference.plan_lattice`.
+    # numbers of points of its pieces.
     for w in numba.prange(len(wanted)):
         slot = wanted[w]
         first, n = slots[slot, 0], slots[slot, 1]

@@ -11,8 +11,6 @@ import numpy.typing as npt
 
 from ..jit import kernel, parallel_kernel
 
-__all__ = ["line_distances"]
-
 NEAR = 8  # segments on either side of where arc length says that the nearest one is
 
 

@@ -1,6 +1,6 @@
 """Compiled kernels: how far the encoder may turn segments, so that no tangent turns by more than an angle.
 
-Same arithmetic as `turn_reference`, which says why; `tangents` says what a tangent is.
+`tangents` says what a tangent is, and why its bounds are what they are.
 """
 
 from __future__ import annotations
@@ -12,19 +12,15 @@ import numba
 
 from ..jit import kernel, parallel_kernel
 from ..layout import MAX_POINTS
-from ..tangents import LEAST_SUM, ONE_POINT
+from ..tangents import FIRST_SHARE, LEAST_SUM, LOOK_BACK, ONE_POINT
 from .tangent_kernels import direction, unit
 
-__all__ = ["cut", "excess", "may_turn", "within"]
-
-FIRST_SHARE = 0.8  # of the angle that a bend may take at the first point of a fiblet; the rest is for coding
-LOOK_BACK = 20  # points before the 60th among which a slot may end
 _MARGIN = 0.99  # for what rounding does to either side of a comparison
 
 
 @kernel
 def may_turn(points: Any, first: int, n: int, follows: Any, bound: Any, units: Any) -> None:
-    """Directions of a slot's segments, and how far each may be turned; see :func:`.turn_reference.may_turn`."""
+    """Directions of a slot's segments, and how far each may be turned."""
     shortest, sine, chord = bound
     one_point = shortest * ONE_POINT
     last = n if follows[1] else n - 1
@@ -104,7 +100,7 @@ def _next_slot(points: Any, a: int, stop: int, bound: Any) -> int:
 
 @parallel_kernel
 def cut(points: Any, offsets: Any, bound: Any, per: Any, at: Any, slots: Any) -> None:
-    """Cut streamlines into slots of at most 60 points; see :func:`.turn_reference.cut`."""
+    """Cut streamlines into slots of at most 60 points."""
     # Called twice: with an empty `slots`, to fill `per (n_streamlines,)` with the number of slots of each streamline;
     # and with `at (n_streamlines,)`, the first slot of each, to fill `slots (m, 2)` with first points and counts.
     for s in numba.prange(len(offsets) - 1):

@@ -29,8 +29,6 @@ import numpy.typing as npt
 
 from ...errors import FormatError
 
-__all__ = ["MANIFEST", "Manifest", "Shard", "StoredFile", "is_set_in_shards"]
-
 MANIFEST = "manifest.json"
 FORMAT, VERSION = "fiblets-shards", 1
 

@@ -20,8 +20,6 @@ from ..ordering import hilbert_keys
 if TYPE_CHECKING:
     from ..fibletset import FibletSet
 
-__all__ = ["shards_of", "streamline_bytes"]
-
 BITS = 16
 BLOCK = 64 * PAGE
 Ints = npt.NDArray[np.int64]

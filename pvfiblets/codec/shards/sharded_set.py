@@ -22,8 +22,6 @@ from .store import Cache, Folder, Remote, store_at
 if TYPE_CHECKING:
     from ..fibletset import FibletSet
 
-__all__ = ["ShardedSet", "renumbered"]
-
 Ints = npt.NDArray[np.int64]
 
 
@@ -31,10 +29,6 @@ class ShardedSet:
     """A set in shards, in a folder or at an address.
 
     Made by :meth:`open`. Opening reads the manifest, and no shard.
-
-    Attributes
-    ----------
-    manifest : Manifest
     """
 
     def __init__(self, manifest: Manifest, store: Folder | Remote) -> None:

@@ -23,8 +23,6 @@ from ...support.cache_folder import cache_folder
 from ...support.whole_files import replacing
 from .manifest import StoredFile
 
-__all__ = ["Cache", "Folder", "Remote", "store_at"]
-
 PIECE = 1 << 22
 TRIES = 5
 PAUSE = 0.5  # seconds before the second try; each further one waits twice as long

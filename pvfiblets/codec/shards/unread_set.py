@@ -27,25 +27,11 @@ from ..parameters import Parameters
 from ..point_values import PointValues
 from .sharded_set import ShardedSet, renumbered
 
-__all__ = ["CodesOfShards", "UnreadSet"]
-
 Ints = npt.NDArray[np.int64]
 
 
 class UnreadSet(FibletSet):
-    """A set in shards with the interface of :class:`.FibletSet`.
-
-    Parameters
-    ----------
-    shards : ShardedSet
-    numbers : iterable of int, optional
-        Shards that count: the streamlines of the others have no points. All by default.
-
-    Attributes
-    ----------
-    shards : ShardedSet
-    numbers : tuple of int
-    """
+    """A set in shards with the interface of :class:`.FibletSet`."""
 
     def __new__(cls, *_: Any, **fields: Any) -> Any:
         """Make one; where `dataclasses.replace` gives records, a set in memory."""

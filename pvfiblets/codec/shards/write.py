@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from tqdm import tqdm
 
-from ...support.unfinished import locked, remove_unfinished, scratch_beside, unfinished
+from ...support.unfinished import locked, remove_unfinished, scratch_folder_for, unfinished
 from ...support.whole_files import naming_target
 from ..extract import extract
 from ..progress import Progress
@@ -26,8 +26,6 @@ from .places import shards_of
 
 if TYPE_CHECKING:
     from ..fibletset import FibletSet
-
-__all__ = ["compress_file_in_shards", "write_shards"]
 
 THINNED = 1 / 16
 """Share of the streamlines that stands in a file of its own for first pictures; no more bytes than a shard has."""
@@ -65,7 +63,7 @@ def compress_file_in_shards(
     else:
         with (
             naming_target(target),
-            scratch_beside(target) as made,
+            scratch_folder_for(target) as made,
         ):
             aside = made / "whole.fiblets"
             result = compress_file(source, aside, progress=progress, **options)

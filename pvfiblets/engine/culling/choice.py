@@ -15,8 +15,6 @@ from contextlib import contextmanager
 
 from ..gl.picture_clock import PictureClock
 
-__all__ = ["FEW_FIBLETS", "CullingChoice"]
-
 FEW_FIBLETS = 20_000
 """Fewer, 1.2 million points, are never worth it: nothing is tried, and nothing of it is compiled."""
 
@@ -26,22 +24,10 @@ FASTER = 0.95  # of the time, to be worth a change
 
 
 class CullingChoice:
-    """Decides picture by picture.
-
-    Parameters
-    ----------
-    clock : PictureClock
-    culling : bool
-        Initially on or off; on, programs compiled later make a picture late.
-
-    Attributes
-    ----------
-    culling : bool
-        What was found to be faster.
-    """
+    """Decides picture by picture."""
 
     def __init__(self, clock: PictureClock, culling: bool = True) -> None:
-        self.culling = culling
+        self.culling = culling  # What was found to be faster
         self._clock = clock
         self._planned: list[tuple[bool, bool]] = []  # whether culled, and whether its time counts
         self._times: dict[bool, list[float]] = {True: [], False: []}

@@ -44,8 +44,6 @@ from .pyramid import DepthPyramid
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["CoverageBuffer", "dilation_radius"]
-
 LEVEL = 3
 """Level of the pyramid: squares of 16 pixels."""
 
@@ -103,16 +101,7 @@ class _Camera:
 
 
 class CoverageBuffer:
-    """Hides what the last picture hid.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    fiblets : FibletSet
-        Asked for its coordinates and sizes, not kept.
-    """
+    """Hides what the last picture hid."""
 
     feature = "CULL_COVERAGE"
     halfway = False

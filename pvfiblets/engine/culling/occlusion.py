@@ -10,8 +10,6 @@ from ..view import Style, View
 if TYPE_CHECKING:
     import moderngl
 
-__all__ = ["Occlusion"]
-
 
 class Occlusion(Protocol):
     """A texture of depth that fiblets are tested against by ``hidden()`` of ``shaders/culling/occlusion.glsl``."""

@@ -20,8 +20,6 @@ from ..gl.program_uniforms import set_uniforms
 from ..gl.shaders import Programs
 from ..view import Style, View
 
-__all__ = ["DepthPyramid"]
-
 SMALLEST = 8
 """Pixels of the smallest level's longer side: larger squares hide nothing that smaller ones do not."""
 
@@ -63,21 +61,7 @@ class _Levels:
 
 
 class DepthPyramid:
-    """Built of a G-buffer's depth: of this picture's so far, and of the last picture's.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-
-    Attributes
-    ----------
-    predicts : bool
-        Whether there is a last picture from which a pipeline may predict the first draws.
-    outside : moderngl.Texture or None
-        Depth of other things in the scene, which hides too.
-    """
+    """Built of a G-buffer's depth: of this picture's so far, and of the last picture's."""
 
     feature = "CULL_PYRAMID"
     halfway = True
@@ -90,8 +74,8 @@ class DepthPyramid:
         self._size = (0, 0)
         self._now: _Levels | None = None
         self._last: _Levels | None = None
-        self.predicts = False
-        self.outside: moderngl.Texture | None = None
+        self.predicts = False  # Whether there is a last picture from which a pipeline may predict the first draws
+        self.outside: moderngl.Texture | None = None  # Depth of other things in the scene, which hides too
 
     def _resize(self, size: tuple[int, int]) -> None:
         if size != self._size:

@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from ..gl.passes import Passes
     from ..hit_target import HitTarget
 
-__all__ = ["LEAST_SEGMENTS", "Listing", "supports_listing"]
-
 LEAST_SEGMENTS = 16000
 """With fewer, two rounds and a pyramid cost more than they save: for 3,500 segments twice the time."""
 _QUAD = 4  # vertices
@@ -38,21 +36,7 @@ _GROUP = 64
 
 
 class Listing:
-    """Lists and draws the items of one set that may show.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    n_items : int
-    cull : str
-        The compute shader that lists them, an invocation each.
-    features : sequence of str
-        Of that shader; they may be others for each picture.
-    shift : int
-        Items are ``1 << shift`` quads each: a quad's number shifted right by this is its item's.
-    """
+    """Lists and draws the items of one set that may show."""
 
     def __init__(
         self,
@@ -61,9 +45,9 @@ class Listing:
         programs: Programs,
         n_items: int,
         *,
-        cull: str,
-        features: Sequence[str] = (),
-        shift: int = 0,
+        cull: str,  # The compute shader that lists them, an invocation each
+        features: Sequence[str] = (),  # Of that shader; they may be others for each picture
+        shift: int = 0,  # Items are ``1 << shift`` quads each: a quad's number shifted right by this is its item's
     ) -> None:
         self._ctx, self._gl, self._programs, self._n = ctx, gl, programs, n_items
         self._cull, self.features, self._shift = cull, list(features), shift

@@ -11,8 +11,6 @@ import numpy.typing as npt
 from .projection import Projection
 from .screen import ScreenEffect
 
-__all__ = ["MAX_SAMPLES", "AmbientOcclusionPass"]
-
 MAX_SAMPLES = 256  # pixels looked at around each; more change nothing that 8 bits can show
 
 GAIN, BIAS = 6.0, 0.1

@@ -10,8 +10,6 @@ import moderngl
 from .projection import Projection
 from .screen import ScreenEffect
 
-__all__ = ["WIDEST", "HaloPass"]
-
 WIDEST = 24.0  # greatest width of a halo, pixels of the finished picture; lines near the viewer would have wider ones
 
 TILE = 8  # pixels of a tile's side: as wide as a usual halo, so that few tiles are looked into

@@ -10,8 +10,6 @@ import numpy.typing as npt
 
 from .screen import ScreenEffect
 
-__all__ = ["OutlinePass"]
-
 ROW = 4096  # streamlines in a row of the texture: below every driver's limit
 
 

@@ -22,8 +22,6 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["CENTRED", "MOST", "energy_distance", "sample_positions", "sample_squares"]
-
 MOST = 256  # samples: with 256, the error is below one level of eight bits at nearly all edges
 
 CENTRED = 8  # samples from which on one of them is the pixel's middle: fewer would be a worse picture by it

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ..view import View
     from .sample_layers import Rectangle, SampledLines, SampleLayers
 
-__all__ = ["FibletDrawable", "has_layers"]
-
 
 def has_layers(view: View, style: FibletStyle) -> bool:
     """Return True for lines without a surface, cut by planes at most, which can be drawn as layers of samples."""

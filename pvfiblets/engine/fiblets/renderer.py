@@ -95,14 +95,14 @@ class FibletRenderer(LinesBehind):
         self._known_times: dict[str, tuple[float, int]] = {}
         self._query: RegionQuery | None = None
         self._choice: CullingChoice | None = None
-        limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
+        limits = Limits.from_context(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         two_phase = pipeline in ("compute", *MESH) and culling in ("two-phase", "auto")
         self._limits = limits = replace(limits, clustered=two_phase and fiblets.n_fiblets >= chunks.CLUSTERED)
         with self._making():
             whole = fiblets if whole is None else whole
-            room = MemoryBudget.of(ctx, self._gl, limits, max_total_bytes)
+            room = MemoryBudget.from_context(ctx, self._gl, limits, max_total_bytes)
             fitted = upload_fitting(ctx, fiblets, room, fit, self._chunks, progress, most)
-            self._fiblets = fiblets = fitted.kept()
+            self._fiblets = fiblets = fitted.fitting_set()
             self.share = fitted.share
             self._shared = self._keep(SharedBlocks(ctx, fiblets))
             place = self._shared.place

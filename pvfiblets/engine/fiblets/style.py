@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from ..view import Style, check_at_least
 
-__all__ = ["FibletStyle"]
-
 LARGEST_DISC = 64.0  # pixels of the discs at ends; a VTK property may exceed it
 
 NO_WIDTH = 1e-3  # pixels: a brush that reaches none. 0 stands for thin lines.

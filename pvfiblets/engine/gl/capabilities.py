@@ -19,20 +19,6 @@ from .gl_version import version_of
 from .moderngl_extras import INTEGERS, GLExtras
 from .passes import is_software
 
-__all__ = [
-    "AUTO",
-    "CULLINGS",
-    "FITS",
-    "PIPELINES",
-    "Capabilities",
-    "PipelineInfo",
-    "PipelineTable",
-    "atomics64",
-    "check_choices",
-    "choose",
-    "pipelines",
-]
-
 AUTO = "auto"
 
 # Fastest first. On an NVIDIA H100 compute draws 60 million segments in 7 ms, tessellation in 640, the geometry stage in
@@ -107,7 +93,7 @@ class Capabilities:
     limits: dict[str, int]  # integers by OpenGL's names, without missing extensions
 
     @classmethod
-    def of(cls, ctx: moderngl.Context) -> Capabilities:
+    def from_context(cls, ctx: moderngl.Context) -> Capabilities:
         """Describe a context, which must be current."""
         functions, info = GLExtras(ctx), ctx.info
         limits = {name: functions.get_integer(name) for name in _limits_of(ctx)}

@@ -14,8 +14,6 @@ import numpy.typing as npt
 
 from .moderngl_extras import GLExtras
 
-__all__ = ["DelayedRead"]
-
 AT_ONCE = 3  # pictures that may be on their way: drivers queue two or three
 
 _FLOAT = 4

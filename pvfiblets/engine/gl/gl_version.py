@@ -11,8 +11,6 @@ from __future__ import annotations
 
 import moderngl
 
-__all__ = ["version_of"]
-
 GENEROUS = ("NVIDIA Corporation",)  # vendors whose older contexts have all of later versions
 
 _TAKEN_IN: tuple[tuple[int, tuple[str, ...]], ...] = (

@@ -27,7 +27,7 @@ from .gl_functions import FUNCTIONS, INTEGERS, RETURNS
 from .gl_loader import loader
 from .gl_version import version_of
 
-__all__ = ["INTEGERS", "TEXEL_FORMATS", "BufferTexture", "GLExtras", "Uniform"]
+__all__ = ["INTEGERS", "TEXEL_FORMATS", "BufferTexture", "GLExtras", "Uniform", "depth_texture"]
 
 TEXEL_FORMATS: dict[str, tuple[int, int]] = {
     "r8ui": (0x8232, 1),
@@ -54,6 +54,7 @@ _LEVEL_FORMATS: dict[tuple[str, int], tuple[int, int, int]] = {
 
 _TEXTURE_0, _TEXTURE_2D, _TEXTURE_BUFFER = 0x84C0, 0x0DE1, 0x8C2A
 _TEXTURE_2D_MULTISAMPLE = 0x9100
+_DEPTH_COMPONENT, _DEPTH_COMPONENT_32F, _FLOAT = 0x1902, 0x8CAC, 0x1406
 _BASE_LEVEL, _MAX_LEVEL = 0x813C, 0x813D
 _READ_FRAMEBUFFER, _DRAW_FRAMEBUFFER, _FRAMEBUFFER = 0x8CA8, 0x8CA9, 0x8D40
 _COLOR_ATTACHMENT_0 = 0x8CE0
@@ -283,3 +284,13 @@ class GLExtras:
         with self.framebuffers_kept():
             framebuffer.use()
             self.function("glClearBufferfv")(_DEPTH, 0, ctypes.byref(ctypes.c_float(depth)))
+
+
+def depth_texture(ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int]) -> moderngl.Texture:
+    """Make a depth buffer of float32 that shaders read by ``texelFetch``; moderngl's own have 24 bits."""
+    texture = ctx.depth_texture(size)
+    texture.compare_func = ""
+    texture.filter = moderngl.NEAREST, moderngl.NEAREST
+    texture.use(ctx.default_texture_unit)
+    gl.function("glTexImage2D")(_TEXTURE_2D, 0, _DEPTH_COMPONENT_32F, *size, 0, _DEPTH_COMPONENT, _FLOAT, None)
+    return texture

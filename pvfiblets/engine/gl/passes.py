@@ -15,9 +15,6 @@ from .gl_version import version_of
 from .moderngl_extras import GLExtras
 from .queries import Timers
 
-__all__ = ["GROUP_SIZE", "Passes", "dispatch", "has_storage", "is_software", "nowhere", "work_groups"]
-
-
 SOFTWARE = ("llvmpipe", "softpipe", "swrast")
 
 

@@ -38,8 +38,6 @@ from .bindings import BLOCKS, CONSTANTS
 from .gl_version import version_of
 from .uniform_struct import find_struct
 
-__all__ = ["EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "preprocess", "read_shader", "switched_on"]
-
 logger = logging.getLogger("pvfiblets.engine")
 
 FEATURES: dict[str, str] = {

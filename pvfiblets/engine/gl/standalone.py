@@ -7,8 +7,6 @@ from typing import Any
 
 from ..errors import EngineError
 
-__all__ = ["bare_context"]
-
 # Some drivers give exactly the requested version. Every pipeline needs 3.3 at least; 3.2, which VTK itself needs, is
 # tried for the sake of a clear error.
 VERSIONS = (460, 450, 430, 410, 330, 320)

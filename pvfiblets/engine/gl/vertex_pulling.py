@@ -13,8 +13,6 @@ import numpy.typing as npt
 
 from .gl_version import version_of
 
-__all__ = ["BATCH", "QUAD", "PulledShapes"]
-
 BATCH = 65536  # vertices of a call: what an index of 16 bits reaches
 
 INDIRECT = 430  # OpenGL from which on one call makes all others

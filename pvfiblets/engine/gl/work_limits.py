@@ -39,7 +39,7 @@ class WorkLimits(NamedTuple):
     listed: int = 1 << 31  # fiblets of one of several calls that share the drawing of a list
 
     @classmethod
-    def of(cls, ctx: moderngl.Context) -> WorkLimits:
+    def from_context(cls, ctx: moderngl.Context) -> WorkLimits:
         """Return the limits for a context's card; one of no known name counts as integrated."""
         if is_software(ctx):
             return SOFTWARE

@@ -19,8 +19,6 @@ from ..lattice import TOP
 from ..view import Style, View
 from .vertices import MOST
 
-__all__ = ["CONSTANTS", "HALOS_BLOCK", "ITEM_SHIFT", "HaloBlocks"]
-
 BESIDE = 3.0  # half pictures from the middle, beyond which an axis is cut off
 
 ITEM_SHIFT = 3  # items are listed by eights: to look at each would cost more than it spares, and four bytes a vertex
@@ -74,9 +72,9 @@ class HaloBlocks(BlockBuffers):
         self.put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
         self.put("halos", HALOS_BLOCK, self._block(view, look, n_items, drawn_width, reference))
         planes = clip_planes_block(view, 0.0, *self._place, 0.0)
-        return self.put("clip_planes", CLIP_PLANES_BLOCK, planes), self._beside(view)
+        return self.put("clip_planes", CLIP_PLANES_BLOCK, planes), self._near_the_view(view)
 
-    def _beside(self, view: View) -> bool:
+    def _near_the_view(self, view: View) -> bool:
         x, y, z, w = view.model_view_projection @ np.column_stack([self._corners, np.ones(8)]).T
         inside = (np.abs(z) < w) & (np.maximum(np.abs(x), np.abs(y)) < BESIDE * w)
         return not inside.all()

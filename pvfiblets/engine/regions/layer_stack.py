@@ -13,8 +13,6 @@ from ..gl.delayed_read import DelayedRead
 from ..gl.moderngl_extras import GLExtras
 from ..gl.shaders import Programs
 
-__all__ = ["LayerStack", "Rectangle", "Squares"]
-
 Array = npt.NDArray[np.float32]
 Rectangle = tuple[int, int, int, int]  # pixels: left, lower, right, upper
 

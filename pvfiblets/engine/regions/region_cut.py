@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ..view import View
     from .ray_intervals import RegionIntervals
 
-__all__ = ["Place", "RegionCut"]
-
 Array = npt.NDArray[np.float64]
 Place = tuple[Array, Array, int]  # origin of a lattice and mm per integer, `(3,)` float64, and the largest integer
 

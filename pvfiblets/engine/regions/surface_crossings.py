@@ -34,8 +34,6 @@ from .layer_stack import LayerStack, Rectangle, Squares
 if TYPE_CHECKING:
     from ...query.regions.surfaces import Surface
 
-__all__ = ["Peeled", "SurfaceLayers", "rectangle_of"]
-
 MOST = 4095  # fragments of front or of back faces that a count holds
 
 IN_A_LAYER = 4  # crossings that a layer holds

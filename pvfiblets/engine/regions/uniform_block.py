@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from ...query.regions.shapes import Shape
     from ..gl.moderngl_extras import GLExtras
 
-__all__ = ["REGIONS_BLOCK", "FieldTextures", "RegionBlock", "region_block", "region_features"]
-
 UNDECIDED = -1  # kind of a leaf whose numbers float32 cannot hold: nothing is ever sure about it
 
 REGIONS_BLOCK = UniformStruct(

@@ -18,8 +18,6 @@ from ..view import View
 if TYPE_CHECKING:
     from ...tubes.spline_tubes import SplineTubes
 
-__all__ = ["EyeInsideTest"]
-
 _GROUP = 256
 Array = npt.NDArray[np.float64]
 

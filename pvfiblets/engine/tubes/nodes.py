@@ -23,8 +23,6 @@ from ..lattice import lattice, places
 if TYPE_CHECKING:
     from ...tubes.spline_tubes import NodeValues, SplineTubes
 
-__all__ = ["Nodes"]
-
 
 HIDDEN = 4  # flag of segments that are not drawn (`shaders/tubes/write_varyings.glsl`)
 

@@ -9,8 +9,6 @@ from typing import Any
 
 from ..view import Style, check_at_least
 
-__all__ = ["SILHOUETTES", "SOLVERS", "Solver", "TubeStyle", "check_choices"]
-
 AUTO = "auto"
 
 SILHOUETTES: dict[str, str] = {

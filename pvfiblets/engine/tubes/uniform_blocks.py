@@ -16,8 +16,6 @@ from ..gl.block_buffers import BlockBuffers
 from ..gl.uniform_struct import Field, UniformStruct
 from ..view import Style, View
 
-__all__ = ["SPLINES_BLOCK", "TubeBlocks"]
-
 SPLINES_BLOCK = UniformStruct(
     "Splines",
     Field("tube_place_scale", "float", "mm per integer of a place"),

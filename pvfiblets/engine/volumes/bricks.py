@@ -11,8 +11,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-__all__ = ["MOST_PAGES", "BrickLayout", "Range", "lay_out", "pieces", "voxels_of_page"]
-
 MOST_PAGES = 8  # textures of one volume
 
 PIECE = 1 << 24

@@ -17,8 +17,6 @@ from ..gl.bindings import VOLUMES
 from ..gl.moderngl_extras import GLExtras
 from ..gl.passes import nowhere
 
-__all__ = ["interpolates_finely"]
-
 PLACES = 509
 TEXELS: dict[str, tuple[npt.NDArray[Any], float]] = {
     "f1": (np.array([100, 101], np.uint8), 255.0),

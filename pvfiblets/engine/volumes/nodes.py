@@ -16,8 +16,6 @@ from ..errors import EngineError
 from ..gl.bindings import VOLUMES
 from ..gl.moderngl_extras import BufferTexture, GLExtras
 
-__all__ = ["NodeList"]
-
 WORTH = 0.5
 """Part of the leaves that are looked into which must be even for rays to ask of each: fewer, and asking costs more than
 it saves. Measured on two cores: 1.5 times as fast from 0.5 on, 1.08 at 0.4, 0.9 where there are none."""

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ..gbuffer import GBuffer
     from ..view import View
 
-__all__ = ["GOLDEN", "LIFT", "MAX_SAMPLES", "RayOcclusionPass"]
-
 MAX_SAMPLES = 2048  # rays of a pixel: the most that float16 counts one by one
 
 MOST_TURNS = 20_000
@@ -118,7 +116,7 @@ class RayOcclusionPass(ScreenEffect):
             for name, value in uniforms.items():
                 program[name] = value
             with self._timers.timed(_NAME):
-                target, limits = self._targets[_NAME][1], WorkLimits.of(self._ctx)
+                target, limits = self._targets[_NAME][1], WorkLimits.from_context(self._ctx)
                 target.use()
                 target.clear()
                 self._ctx.enable(moderngl.BLEND)

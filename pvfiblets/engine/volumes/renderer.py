@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from ...volumes.volume import RaycastVolume
     from .shading import Shading
 
-__all__ = ["VolumeRenderer", "VolumeStyle"]
-
 LATTICE = 1 << 16
 """Steps over the volume's bounds, of which one point is the origin of local coordinates where a region cuts."""
 
@@ -101,7 +99,7 @@ class VolumeRenderer(Drawable[VolumeStyle]):
             self._block = self._keep(RayBlock(ctx, volume, (self._voxels.scale, self._voxels.shift)))
             self._nodes = self._keep(NodeList(ctx, self._gl, volume))
             self._tables = self._keep(TransferTextures(ctx, volume))
-            self._work = WorkLimits.of(ctx)
+            self._work = WorkLimits.from_context(ctx)
             bounds = np.array(volume.bounds).reshape(3, 2)
             place = bounds[:, 0], np.ptp(bounds, axis=1) / LATTICE, LATTICE
             self._cuts = self._keep(RegionCut(ctx, self._gl, self._programs, place))

@@ -15,8 +15,6 @@ from ..gl.bindings import VOLUMES
 from ..gl.passes import is_software
 from .bricks import MOST_PAGES, BrickLayout, Range, lay_out, pieces, voxels_of_page
 
-__all__ = ["ColourTexture", "Limits", "VolumeTexture"]
-
 _FORMATS: dict[Any, tuple[str, float, float]] = {
     np.uint8: ("f1", 255.0, 0.0),
     np.uint16: ("nu2", 65535.0, 0.0),
@@ -40,7 +38,7 @@ class Limits:
     voxels: float = UNLIMITED  # of one texture
 
     @classmethod
-    def of(cls, ctx: moderngl.Context) -> Limits:
+    def from_context(cls, ctx: moderngl.Context) -> Limits:
         """Ask a context."""
         return cls(
             int(ctx.info["GL_MAX_3D_TEXTURE_SIZE"]),
@@ -58,7 +56,7 @@ class VolumeTexture:
 
     def __init__(self, ctx: moderngl.Context, volume: RaycastVolume, limits: Limits | None = None) -> None:
         self._ctx = ctx
-        limits = Limits.of(ctx) if limits is None else limits
+        limits = Limits.from_context(ctx) if limits is None else limits
         voxels = volume.values
         # Mesa interpolates bytes to bytes: surfaces would lie on stairs.
         kept = np.uint16 if voxels.dtype == np.uint8 and is_software(ctx) else voxels.dtype.type
@@ -183,7 +181,7 @@ class ColourTexture:
 
     def __init__(self, ctx: moderngl.Context, colours: npt.NDArray[np.uint8]) -> None:
         nx, ny, nz = colours.shape[:3]
-        limit = Limits.of(ctx).cube
+        limit = Limits.from_context(ctx).cube
         size = f"{nx} x {ny} x {nz} voxels"
         if max(nx, ny, nz) > limit:
             raise EngineError(

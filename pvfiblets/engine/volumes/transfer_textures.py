@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ...volumes.transfer import Transfer
     from ...volumes.volume import RaycastVolume
 
-__all__ = ["TransferTextures"]
-
 SIZE = 1024  # entries of colours by value: opacities are linear between those of the user, extinctions are not
 
 

@@ -17,8 +17,6 @@ from ..gl.bindings import BLOCKS
 from ..gl.uniform_struct import Field, UniformStruct
 from ..view import MAX_CLIP_PLANES, View
 
-__all__ = ["CONSTANTS", "MAX_LEVELS", "MOST_LAMPS", "RayBlock"]
-
 MAX_LEVELS = 16  # levels of an octree: leaves of 8 voxels in a volume of up to 262,144 along an axis
 
 MOST_LAMPS = 8  # lamps of a scene that shine on light through a volume: the first ones that are on

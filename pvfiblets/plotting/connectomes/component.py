@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.call_signature import document, plotter_method, split_arguments
+from pvfiblets.plotting.call_signature import document, plotter_method, refuse_unknown, split_arguments
 from pvfiblets.plotting.components import register
 from pvfiblets.plotting.connectomes.settings import ConnectomeCommon, EdgeSettings
 from pvfiblets.plotting.settings import Given
@@ -65,7 +65,8 @@ class ConnectomesComponent:
 
     def add(self, /, matrix: Any, labels: Any, **arguments: Any) -> ConnectomeGraph:
         """Make a graph and add it to the plotter."""
-        common, given, own = split_arguments(self, arguments)
+        common, given, own = split_arguments(self, self.COMMON, arguments)
+        refuse_unknown(self, own)
         reset_camera, render, name = (common.pop(word) for word in ("reset_camera", "render", "name"))
         taken = {graph.name for graph in self}
         if name is None:

@@ -13,6 +13,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkCellPicker
 
+from pvfiblets.plotting.active_view import active_view
 from pvfiblets.plotting.settings import number
 from pvfiblets.query.connectome.graph import Graph, mean_streamlines
 from pvfiblets.slices.labels import LabelTable, as_label_table
@@ -234,15 +235,9 @@ class ConnectomeGraph:
         # PyVista also removes scalar bars of the active renderer only.
         if self._renderer is None:
             raise RuntimeError(f"{self.name!r} was removed from its plotter; add the connectome again")
-        renderers = self._plotter.renderers
-        before = renderers.index_to_loc(renderers.active_index)
-        own = renderers.index_to_loc(list(renderers).index(self._renderer))
-        renderers.set_active_renderer(*np.atleast_1d(own).tolist())
         given = {word: self._common[word] for word in ("pickable", "user_matrix")}
-        try:
+        with active_view(self._plotter, self._renderer):
             yield {**given, "reset_camera": False, "render": False}
-        finally:
-            renderers.set_active_renderer(*np.atleast_1d(before).tolist())
 
     # Inside -------------------------------------------------------------------------------------
 

@@ -15,7 +15,7 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets.plotting.actor_registry import ActorRegistry
-from pvfiblets.plotting.call_signature import plotter_method
+from pvfiblets.plotting.call_signature import plotter_method, refuse_unknown
 from pvfiblets.plotting.components import register
 from pvfiblets.plotting.fiblets.picking import MousePicking
 from pvfiblets.plotting.fiblets.settings import FibletSettings
@@ -168,7 +168,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         if live and why_not(self.ADD, unknown[0]) is None:
             sets = "; ".join(f"actor.{name} = ..." for name in live)
             raise TypeError(f"add_fiblets() takes no {', '.join(live)}: set it on the actor that it returns ({sets})")
-        self._refuse(unknown)
+        refuse_unknown(self, unknown)
 
     # Picking ------------------------------------------------------------------------------------
 

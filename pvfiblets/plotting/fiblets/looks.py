@@ -17,8 +17,6 @@ from typing import Any
 
 from pvfiblets.plotting import shared_settings as shared
 
-__all__ = ["LOOKS", "Apart", "Fewer", "Look", "check_look", "look_of", "settings_of"]
-
 
 @dataclass(frozen=True)
 class Apart:

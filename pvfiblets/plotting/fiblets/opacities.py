@@ -13,8 +13,6 @@ from pvfiblets.support.real_numbers import real_numbers
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = ["TRANSFERS", "Opacities", "find_opacities"]
-
 TRANSFERS = ("linear", "linear_r", "geom", "geom_r", "sigmoid", "sigmoid_r")
 """Transfer functions that a page offers; PyVista has more sigmoids."""
 

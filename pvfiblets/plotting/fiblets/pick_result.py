@@ -13,6 +13,7 @@ from pvfiblets.mappers.picking import Layer, pick_area, shown_by
 from pvfiblets.mappers.scene import to_array
 
 if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.fiblets.actor import FibletActor
 
 _AT_ONCE = 4096  # streamlines that are decompressed together
@@ -108,7 +109,7 @@ def _between(offsets: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.nd
     return offsets[:-1] + before, offsets[:-1] + np.minimum(before + 1, last), share
 
 
-def point_values(fiblets: Any, ids: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray] | None:
+def point_values(fiblets: FibletSet, ids: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray] | None:
     """Return one number per point of some streamlines, one after another, and their offsets."""
     if name in fiblets.per_point:
         lines = fiblets.decompress(ids)

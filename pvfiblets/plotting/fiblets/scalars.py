@@ -178,14 +178,14 @@ def warn_if_apart(fiblets: FibletSet | Streamlines, image: Image, effect: str, *
     places = corners @ image.affine[:3, :3].T + image.affine[:3, 3]
     theirs = np.stack([places.min(axis=0), places.max(axis=0)], axis=1).ravel()
     warnings.warn(
-        f"no streamline meets the image {image.name or 'image'!r}, so that {effect}: it lies in {_told(theirs)} mm, "
-        f"the streamlines in {_told(fiblets.bounds)} mm. pv.read() loses where a NIfTI file lies: give its path, or "
+        f"no streamline meets the image {image.name or 'image'!r}, so that {effect}: it lies in {_extent(theirs)} mm, "
+        f"the streamlines in {_extent(fiblets.bounds)} mm. pv.read() loses where a NIfTI file lies: give its path, or "
         "pvfiblets.read_volume(path)",
         UserWarning,
         stacklevel=stacklevel,
     )
 
 
-def _told(bounds: Any) -> str:
+def _extent(bounds: Any) -> str:
     pairs = zip("xyz", bounds[::2], bounds[1::2], strict=True)
     return ", ".join(f"{axis} {low:.4g} to {high:.4g}" for axis, low, high in pairs)

@@ -16,12 +16,12 @@ from pvfiblets.codec.point_arrays import unit_colours, with_coded_values, with_p
 from pvfiblets.codec.point_arrays import with_point_values as add_values
 from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.formats.attachments import is_values_file, name_of, values_for
+from pvfiblets.images.sources import as_image, is_image
 from pvfiblets.invalid_points import Invalid, valid_points
 from pvfiblets.line_cells import NOT_LINES
 from pvfiblets.lines import refuse_words, rows_of
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
 from pvfiblets.plotting.fiblets.scalars import refuse_unknown
-from pvfiblets.plotting.fiblets.volume_sources import as_volume
 from pvfiblets.plotting.same_names import Preference, with_preference
 from pvfiblets.plotting.scalars import UNNAMED, are_colours, magnitudes
 from pvfiblets.query.measures.measures import Distance, measure
@@ -75,31 +75,17 @@ def as_fiblets(
         scalars = name_of(scalars)
     if isinstance(scalars, str):
         refuse_unknown(streamlines, scalars)
-    kept = per_point if isinstance(per_point, str) else tuple(per_point)
-    keep = list(choose_per_point(streamlines, kept, options.get("per_point_bits", 8)))
+    arrays = per_point if isinstance(per_point, str) else tuple(per_point)
+    keep = list(choose_per_point(streamlines, arrays, options.get("per_point_bits", 8)))
     if isinstance(opacity, str) and opacity in streamlines.per_point:
         keep.append(opacity)
     if isinstance(scalars, str):
         if scalars in streamlines.per_point:
-            keep.append(scalars)
-            vectors = np.asarray(streamlines.per_point[scalars])
-            refuse_words(vectors, f"scalars {scalars!r}", per_line=False)
-            if are_colours(vectors, _by_name(scalars, rgb)):
-                keep = [name for name in keep if name != scalars] + _hold_colours(streamlines, scalars, vectors)
-            elif vectors.ndim > 1:
-                columns = {f"{scalars}[{k}]": vectors[:, k] for k in range(vectors.shape[1]) if scalars in keep[:-1]}
-                lengths = numbers_of_points(scalars, vectors)
-                streamlines.per_point = {**streamlines.per_point, **columns, scalars: lengths}
-                keep += columns
+            keep = _keep_named(streamlines, scalars, keep, rgb)
     elif scalars is not None and volume is None and not isinstance(scalars, Distance):
-        scalars = values = rows_of(scalars, (streamlines.n_points, len(streamlines)))
-        if values.shape[:1] == (streamlines.n_points,) and streamlines.n_points != len(streamlines):
-            if are_colours(values, rgb):
-                keep += _hold_colours(streamlines, UNNAMED, values)
-            else:
-                values = numbers_of_points(UNNAMED, values)
-                streamlines.per_point = {**streamlines.per_point, UNNAMED: values}
-                keep.append(UNNAMED)
+        scalars = rows_of(scalars, (streamlines.n_points, len(streamlines)))
+        if scalars.shape[:1] == (streamlines.n_points,) and streamlines.n_points != len(streamlines):
+            keep += _keep_unnamed(streamlines, scalars, rgb)
             scalars = UNNAMED
     chosen = options.pop("nan", None)
     nan: Invalid = "split" if chosen is None else chosen
@@ -123,6 +109,37 @@ def as_fiblets(
         error = measure(fiblets, CODING_ERROR, original=streamlines)
         fiblets = with_coded_values(fiblets, CODING_ERROR, error.array())
     return with_point_values(fiblets, scalars) if isinstance(scalars, Distance) else (fiblets, scalars)
+
+
+def as_volume(scalars: Any) -> VolumeSource | None:
+    """Return the volume that ``scalars`` are; ``None`` if they are something else."""
+    if isinstance(scalars, VolumeSource):
+        return scalars
+    if not is_image(scalars):
+        return None
+    image = as_image(scalars)
+    return VolumeSource(image.single, image.affine, name=image.name or "volume")
+
+
+def _keep_named(streamlines: Streamlines, name: str, keep: list[str], rgb: bool | None) -> list[str]:
+    """Bring an array of points into the form that colours; return the names of all arrays to be kept."""
+    vectors = np.asarray(streamlines.per_point[name])
+    refuse_words(vectors, f"scalars {name!r}", per_line=False)
+    if are_colours(vectors, _by_name(name, rgb)):
+        return [other for other in keep if other != name] + _hold_colours(streamlines, name, vectors)
+    if vectors.ndim == 1:
+        return [*keep, name]
+    columns = {f"{name}[{k}]": vectors[:, k] for k in range(vectors.shape[1]) if name in keep}
+    streamlines.per_point = {**streamlines.per_point, **columns, name: numbers_of_points(name, vectors)}
+    return [*keep, name, *columns]
+
+
+def _keep_unnamed(streamlines: Streamlines, values: np.ndarray, rgb: bool | None) -> list[str]:
+    """Hold rows of points under a name; return the names of arrays that they are kept as."""
+    if are_colours(values, rgb):
+        return _hold_colours(streamlines, UNNAMED, values)
+    streamlines.per_point = {**streamlines.per_point, UNNAMED: numbers_of_points(UNNAMED, values)}
+    return [UNNAMED]
 
 
 def _warn_of_nothing(data: FibletSet | Streamlines) -> None:

@@ -23,7 +23,7 @@ class _Looks(Place):
     def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
         actor._change(**{setting.field: value})  # noqa: SLF001 - of the class that it is part of
 
-    def kept(self, actor: Any, one: Argument) -> Any:
+    def value_for_copy(self, actor: Any, one: Argument) -> Any:
         return getattr(actor._looks, one.field)  # noqa: SLF001
 
 

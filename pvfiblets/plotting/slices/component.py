@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.call_signature import document, plotter_method, split_arguments
+from pvfiblets.plotting.call_signature import document, plotter_method, refuse_unknown, split_arguments
 from pvfiblets.plotting.components import register
 from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.slices.settings import SliceCommon, SliceSettings
@@ -68,7 +68,8 @@ class SlicesComponent:
 
     def add(self, /, source: Any, **arguments: Any) -> SliceStack:
         """Make slices and add them to the plotter."""
-        common, given, own = split_arguments(self, arguments)
+        common, given, own = split_arguments(self, self.COMMON, arguments)
+        refuse_unknown(self, own)
         stack = self._make(source, given, **own)
         if common["name"] is not None:
             for other in self:

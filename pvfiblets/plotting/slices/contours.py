@@ -12,8 +12,6 @@ import pyvista as pv
 if TYPE_CHECKING:
     from pvfiblets.plotting.slices.pane import Pane
 
-__all__ = ["PaneContours"]
-
 Array = npt.NDArray[np.float64]
 
 

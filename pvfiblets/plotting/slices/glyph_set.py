@@ -15,8 +15,6 @@ from pvfiblets.slices import glyphs
 from pvfiblets.slices.image import SliceImage
 from pvfiblets.slices.vectors import in_scanner_axes
 
-__all__ = ["GlyphSet"]
-
 Array = npt.NDArray[np.float64]
 Place = Callable[[], "tuple[Array, Array] | None"]
 """Returns a point of a plane and its normal; None where it is not shown."""

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
     from pvfiblets.slices.frames import PlaneGrid
 
-__all__ = ["SliceLayer"]
-
 N_COLOURS = 256
 
 

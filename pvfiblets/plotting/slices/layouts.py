@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["LAYOUTS", "viewports"]
-
 Viewport = tuple[float, float, float, float]
 
 LAYOUTS = ("grid", "row", "beside", "3d", "axial", "coronal", "sagittal", "oblique")

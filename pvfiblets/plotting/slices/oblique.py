@@ -8,8 +8,7 @@ it in the 3-D view and, pushed along its arrow, takes the cross-hair with it.
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,13 +16,12 @@ import numpy.typing as npt
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkWeakReference
 
+from pvfiblets.plotting.active_view import active_view
 from pvfiblets.plotting.slices.pane import Pane
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.slices.plane import SlicePlane
     from pvfiblets.plotting.slices.workspace import Workspace
-
-__all__ = ["NAME", "ObliqueSlice", "Trace", "add_oblique_slice", "turned_about"]
 
 Array = npt.NDArray[np.float64]
 
@@ -167,7 +165,7 @@ class ObliqueSlice:
         if bool(visible) == self.plane.visible:
             return
         self.plane.visible = visible
-        widget = self._there()
+        widget = self._live_widget()
         if widget is not None:
             widget.SetEnabled(bool(visible))
         self._workspace.arrange()
@@ -195,14 +193,14 @@ class ObliqueSlice:
                 alive(normal, origin)
 
         options = {"interaction_event": "always", "outline_translation": False, **options}
-        with _active(plotter, view):
+        with active_view(plotter, view):
             widget = plotter.add_plane_widget(
                 moved, normal=tuple(self.normal), origin=tuple(self.plane.origin), bounds=tuple(bounds), **options
             )
         self._widget = vtkWeakReference()
         self._widget.Set(widget)
 
-    def _there(self) -> Any:
+    def _live_widget(self) -> Any:
         return None if self._widget is None else self._widget.Get()
 
     def _dragged(self, normal: Any, origin: Any) -> None:
@@ -212,7 +210,7 @@ class ObliqueSlice:
 
     def _place_widget(self) -> None:
         """Move the widget to the slice, without an event."""
-        widget = self._there()
+        widget = self._live_widget()
         if widget is not None and not np.allclose(
             [widget.GetNormal(), widget.GetOrigin()], [self.normal, self.plane.origin], atol=1e-9
         ):
@@ -233,20 +231,9 @@ class ObliqueSlice:
         """Take lines and widget away; the plane goes with its stack."""
         for trace in self.traces.values():
             trace.remove()
-        widget, self._widget = self._there(), None
+        widget, self._widget = self._live_widget(), None
         if widget is not None:
             widget.Off()
-
-
-@contextmanager
-def _active(plotter: Any, view: Any) -> Iterator[None]:
-    """Make one of a plotter's views the active one for a while."""
-    renderers, before = plotter.renderers, plotter.renderers.active_index
-    renderers.set_active_renderer(*renderers.index_to_loc(list(renderers).index(view)))
-    try:
-        yield
-    finally:
-        renderers.set_active_renderer(*renderers.index_to_loc(before))
 
 
 def add_oblique_slice(
@@ -256,7 +243,7 @@ def add_oblique_slice(
     if workspace.oblique is not None:
         raise ValueError("the workspace has an oblique slice already; set workspace.oblique.normal")
     views = list(plotter.renderers)
-    with _active(plotter, views[3]):
+    with active_view(plotter, views[3]):
         plane = plotter.slices.add_oblique(workspace.slices, normal, name=NAME, widget=False)
     pane = None
     if len(views) > 4:

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.slices.plane import SlicePlane
     from pvfiblets.plotting.slices.stack import SliceStack
 
-__all__ = ["Pane"]
-
 Array = npt.NDArray[np.float64]
 
 FILLED = 1.05  # height or width of the window per that of the images, to begin with

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.slices.pane import Pane
     from pvfiblets.plotting.slices.workspace import Workspace
 
-__all__ = ["PaneEvents"]
-
 PRIORITY = 0.4  # widgets have 0.5, picking 0.25
 ZOOM = 1.15  # per notch of the wheel
 WINDOWED = 400.0  # pixels of a drag that double a window's width, or move it by its width

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.slices.stack import SliceStack
     from pvfiblets.slices.frames import PlaneGrid
 
-__all__ = ["SliceActor", "SlicePlane", "before_render", "on_events", "prepare"]
-
 Array = npt.NDArray[np.float64]
 
 OVERSAMPLED = 2  # pixels of a slice in the 3-D view along the finest voxel of all layers

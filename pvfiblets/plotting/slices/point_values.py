@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["PointValues", "streamlines_near", "words_of"]
-
 Array = npt.NDArray[np.float64]
 
 

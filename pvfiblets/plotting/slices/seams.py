@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
-__all__ = ["seams_of", "show_seams"]
-
 Viewport = tuple[float, float, float, float]
 
 

@@ -21,8 +21,6 @@ from pvfiblets.slices.image import as_slice_image
 if TYPE_CHECKING:
     from pvfiblets.plotting.slices.glyph_set import GlyphSet
 
-__all__ = ["MOST_LAYERS", "SliceStack"]
-
 Array = npt.NDArray[np.float64]
 
 MOST_LAYERS = 8

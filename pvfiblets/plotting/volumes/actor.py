@@ -40,13 +40,11 @@ from pvfiblets.volumes.transfer import LARGEST_PREINTEGRATED
 if TYPE_CHECKING:
     from pvfiblets.mappers import Colouring, RayHit
 
-__all__ = ["VolumeActor"]
-
 OF_SURFACES = ("ambient_occlusion", "ray_occlusion")
 """Light and peaks have nothing that could stand over anything: they keep these for when a surface shows again."""
 
 
-class PlottedRaycast(Plotted[Options], VolumeMapper):
+class _PlottedRaycast(Plotted[Options], VolumeMapper):
     """A mapper of a volume that rays are cast through, with scalar bars."""
 
     dataset = NoSetting(NO_ATTRIBUTE + "actor.volume holds values and place; actor.update(image) draws others")
@@ -92,7 +90,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
     """
 
     _DATA = "volume"
-    _mapper: PlottedRaycast
+    _mapper: _PlottedRaycast
     _words: PropertyAttributes | None = None
     _alpha_written: Any = None
 
@@ -112,7 +110,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
         self._volume = _smoothed(volume, self._smooth)
         self._of_surfaces: dict[str, Any] = {}
         self._see_through = 1.0
-        mapper = PlottedRaycast(self._volume, RaycastOptions(SURFACE, (0.0,)))
+        mapper = _PlottedRaycast(self._volume, RaycastOptions(SURFACE, (0.0,)))
         super().__init__(mapper, None, chosen, name=name, theme=theme)
         self._lit = self._theme.lighting if chosen["lighting"] is None else chosen["lighting"]
         self._scalars = _scalars(self._volume)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.volumes.settings import LIGHT, SURFACE
+from pvfiblets.volumes.raycast_options import PROJECTIONS
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.volumes.actor import VolumeActor
@@ -31,12 +32,11 @@ class _Word:
     reset: bool = False  # whether the old value is restored, because VTK would draw something else by the new one
 
 
-_PEAK_MODES = ("mip", "local-mip", "minimum", "average")
 _SHADE = "set actor.shade = True to have light shaded"
 _WORDS = {
     "color": _Word("DiffuseColor", (), "set actor.color for one colour, or actor.cmap"),
-    "ambient": _Word("Ambient", (*_PEAK_MODES, SURFACE), "", _SHADE),
-    "diffuse": _Word("Diffuse", (*_PEAK_MODES, SURFACE), "", _SHADE),
+    "ambient": _Word("Ambient", (*PROJECTIONS, SURFACE), "", _SHADE),
+    "diffuse": _Word("Diffuse", (*PROJECTIONS, SURFACE), "", _SHADE),
     "specular": _Word("Specular", (SURFACE,), _PEAKS, _SHADE),
     "specular_power": _Word("SpecularPower", (SURFACE,), _PEAKS, _SHADE),
     "lighting": _Word("Lighting", (SURFACE,), f"{_PEAKS}; of light, set actor.shade", reset=True),
@@ -88,7 +88,7 @@ def tell_given(actor: VolumeActor, given: Mapping[str, Any]) -> None:
     }
     if given.get("shade") is False and actor.mode == LIGHT:
         return  # an explicit shade=False needs no warning
-    if given.get("shade") and actor.mode in _PEAK_MODES:
+    if given.get("shade") and actor.mode in PROJECTIONS:
         unused["shade"] = _PEAKS
     if unused:
         names = " and ".join(f"{name}={given[name]!r}" for name in unused)

@@ -37,7 +37,7 @@ class _Chosen(Own):
     def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
         actor._choose(setting.field, value)  # noqa: SLF001
 
-    def kept(self, actor: Any, one: Argument) -> Any:
+    def value_for_copy(self, actor: Any, one: Argument) -> Any:
         return actor._choices[one.field]  # noqa: SLF001
 
 

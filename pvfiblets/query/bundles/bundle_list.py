@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from ...streamlines import Streamlines
 
-__all__ = ["Bundle", "Bundles", "first_groups", "group_colours", "hidden_groups", "own_colour"]
-
 Ints = npt.NDArray[np.int64]
 Colour = tuple[float, float, float]
 COLOR, VISIBLE = "color", "visible"

@@ -24,8 +24,6 @@ from .resampled import check_count, check_distance, iter_resampled
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["Cluster", "Clusters", "clusters"]
-
 Ints = npt.NDArray[np.int64]
 ROOM = 1024  # clusters with memory at first
 

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from ...streamlines import Streamlines
 
-__all__ = ["recognise"]
-
 Ints = npt.NDArray[np.int64]
 LEAST = 5  # streamlines of a model, below which nothing can be aligned to it
 

@@ -17,8 +17,6 @@ from ...support.progress_bar import progress_bar
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["check_count", "check_distance", "iter_resampled", "resampled"]
-
 Lines = npt.NDArray[np.float32]
 Ints = npt.NDArray[np.int64]
 CHUNK = 1 << 20  # points decoded together: 12 MB

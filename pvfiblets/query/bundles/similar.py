@@ -16,8 +16,6 @@ from .resampled import check_count, check_distance, iter_resampled, resampled
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["Similar", "mdf", "similar"]
-
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 

@@ -15,8 +15,6 @@ import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
 
-__all__ = ["add_to_clusters", "nearest", "pairs", "resample"]
-
 BLOCK = 128  # streamlines that a thread takes at a time
 SLACK = 1e-3  # mm, for rounding of means to float32
 

@@ -21,8 +21,6 @@ from .bundle_list import Bundles
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["bundle_table"]
-
 CHUNK = 1 << 20  # points decoded together
 VOXEL = 1.0  # mm, of the grid that volumes are counted on by default
 

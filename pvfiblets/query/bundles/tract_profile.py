@@ -32,8 +32,6 @@ from .students import student_quantile
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["TractProfile", "Weights", "average_profiles", "core_weights", "profile_table", "tract_profile"]
-
 Floats = npt.NDArray[np.float64]
 Weights = Literal["core", "equal"]
 MOST = 1 << 27  # places, streamlines times places along them, that are held together: 3 GB

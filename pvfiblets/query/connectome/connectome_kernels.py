@@ -10,8 +10,6 @@ import numpy as np
 
 from ...codec.jit import parallel_kernel
 
-__all__ = ["nearest_labels"]
-
 BLOCK = 256  # points a thread looks at in one go
 
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ...images.image import Image
     from ...streamlines import Streamlines
 
-__all__ = ["Graph", "as_graph", "mean_streamlines"]
-
 ROUNDING = 1e-5  # share by which the two numbers of a pair may differ, as printed numbers do
 
 

@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from ...images.image import Image
     from ...streamlines import Streamlines
 
-__all__ = ["STATISTICS", "SUFFIXES", "Connectome", "connectome", "end_labels", "read_matrix"]
-
 STATISTICS = ("sum", "mean", "min", "max")  # statistics that turn the numbers of one pair's streamlines into one
 SUFFIXES = (".csv", ".tsv", ".txt", ".npy")  # suffixes of files that a connectome is written to, and read from
 MOST_VOXELS = 1 << 20  # voxels that may be looked at about an end
@@ -346,6 +344,7 @@ def _offsets(linear: Floats, reach: float) -> tuple[Ints, Floats]:
 
 
 def opened(data: Any) -> Any:
+    """Return data, or what a path of them leads to."""
     if not isinstance(data, (str, os.PathLike)):
         return data
     from ...codec.files.open_lines import open_lines

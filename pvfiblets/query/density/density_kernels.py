@@ -16,10 +16,6 @@ import numpy as np
 from ...codec.jit import kernel, parallel_kernel
 from .voxel_walk_kernels import clip, end_voxels, faces, voxel_along, within
 
-__all__ = [
-    "AMOUNT", "COUNT", "DIRECTION", "VALUE", "add_up", "count_pieces", "count_visits", "cut", "cut_ends", "place",
-]  # fmt: skip
-
 BLOCK = 2048  # items that a thread takes together
 TILE_BITS = 10  # voxels of a tile belong to one thread
 COUNT, AMOUNT, DIRECTION, VALUE = 0, 1, 2, 3

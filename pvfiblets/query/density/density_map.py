@@ -15,8 +15,6 @@ from .voxel_grid import VoxelGrid
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["DensityMap"]
-
 Array = npt.NDArray[np.float64]
 
 

@@ -29,8 +29,6 @@ from ..measures.measures import Distance, Values, decoded_by_rank, measure
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["Part", "Source", "as_source"]
-
 Floats = npt.NDArray[np.float64]
 
 Wanted = str | Distance | Values | npt.ArrayLike | None

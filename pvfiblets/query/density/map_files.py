@@ -18,8 +18,6 @@ from .voxel_grid import VoxelGrid
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["SUFFIXES", "check_suffix", "image_of", "write_map"]
-
 NIFTI, MIF, VTI = (".nii", ".nii.gz"), (".mif", ".mif.gz"), (".vti",)
 SUFFIXES = (*NIFTI, *MIF, *VTI)
 NIFTI1_MOST = 32767  # voxels along an axis that a NIfTI-1 header can name

@@ -37,8 +37,6 @@ from .density_map import DensityMap
 from .density_sources import Part, Source, as_source
 from .voxel_grid import VoxelGrid, grid_about, grid_like
 
-__all__ = ["CONTRASTS", "Contrast", "density"]
-
 CONTRASTS = ("count", "length", "direction")
 Contrast = Literal["count", "length", "direction"]
 PIECES = 1 << 20  # held together

@@ -14,8 +14,6 @@ from ...images.affines import affine as checked
 from ...images.affines import invert_affine
 from ...images.sources import as_image
 
-__all__ = ["VoxelGrid", "grid_about", "grid_like"]
-
 Array = npt.NDArray[np.float64]
 
 MOST = 1 << 40  # largest number of voxels

@@ -11,8 +11,6 @@ from ...streamlines import Streamlines
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["chunks_of", "without_groups"]
-
 CHUNK = 1 << 21  # points decoded together: 50 MB
 
 def without_groups(data: FibletSet | Streamlines) -> Any:

@@ -12,8 +12,6 @@ import numba
 
 from ...codec.jit import kernel, parallel_kernel
 
-__all__ = ["arc_lengths", "curvatures", "least", "means", "resample"]
-
 LONG_ENOUGH = 4.0  # times the error: curvature times a chord's square; errors in any direction change means by 1 % then
 TURN = 1.0  # radians between chords beyond which they are too long for the curve
 STRAIGHT = 0.1  # radians that errors may turn a line by as a whole: it is straight as far as anybody can see

@@ -47,18 +47,6 @@ from .chunks import CHUNK
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = [
-    "COMPUTED",
-    "Curvatures",
-    "Distance",
-    "Kind",
-    "Values",
-    "by_rank",
-    "decoded_by_rank",
-    "measure",
-    "measure_names",
-]
-
 Kind = Literal["streamline", "point"]
 Floats = npt.NDArray[np.float64]
 CODING_ERROR = "coding_error"

@@ -22,8 +22,6 @@ from .measures import Distance, Values, by_rank, measure
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["mean_profile"]
-
 Floats = npt.NDArray[np.float64]
 CHUNK = 1 << 20  # points decoded, or places resampled, together
 

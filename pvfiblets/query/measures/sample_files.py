@@ -23,8 +23,6 @@ from .samples import PointWeights, Statistic, sample
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["check_target", "write_samples"]
-
 NUMBERS = (".txt", ".csv", ".npy")
 BITS = 16  # of a value in a .fiblets file
 

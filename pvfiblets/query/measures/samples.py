@@ -16,8 +16,6 @@ from .chunks import chunks_of, without_groups
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["PointWeights", "Statistic", "along", "check_weights", "half_lengths", "means_along", "sample"]
-
 Floats = npt.NDArray[np.float64]
 PointWeights = Literal["length", "points"]
 Statistic = Literal["mean", "median", "min", "max"]

@@ -27,8 +27,6 @@ from .samples import PointWeights, along, check_weights
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["Table", "check_parquet", "table"]
-
 PARQUET = (".parquet", ".pq")
 _SHOWN = 10  # rows in a notebook
 _MEAN = "mean_"  # of values along a streamline

@@ -17,8 +17,6 @@ from ...codec.jit import kernel, parallel_kernel
 from .index_kernels import LEAF
 from .walk_kernels import ANY, CHANGED, HERE
 
-__all__ = ["ADDED", "ALL_FLAGS", "GONE", "OPEN", "REMOVED", "SAME", "SURE", "close_parts", "settle"]
-
 ADDED, REMOVED, ALL_FLAGS = 0, 1, 2  # query: of added or removed voxels, whether they are passed; otherwise all flags
 SAME, SURE, GONE, OPEN = 0, 1, 2, 3  # nothing changes for a fiblet; it passes now; it does no more; it must be decoded
 BLOCK, FEW = 256, 16
@@ -27,7 +25,7 @@ WIDEST = 2.0  # voxels: a larger radius settles nothing
 
 
 @kernel
-def _kept(code: int) -> float:
+def _signed_byte(code: int) -> float:
     return float(code - 256 if code > 127 else code)
 
 
@@ -190,9 +188,9 @@ def _fiblet(u: Any, parts: int, only: int, kept: Any, pieces: Any, row: int, uni
 def _place(k: int, pieces: Any, row: int, leaves: Any, leaf: int, unit: float, linear: Any, mean: Any, kept: Any,
            u: Any) -> None:  # fmt: skip
     """Position ``k`` of a fiblet in mm and in voxels."""
-    x = unit * _kept(pieces[row, 3 * k])
-    y = unit * _kept(pieces[row, 3 * k + 1])
-    z = unit * _kept(pieces[row, 3 * k + 2])
+    x = unit * _signed_byte(pieces[row, 3 * k])
+    y = unit * _signed_byte(pieces[row, 3 * k + 1])
+    z = unit * _signed_byte(pieces[row, 3 * k + 2])
     kept[k, 0], kept[k, 1] = leaves[leaf, 3 * k] + x, leaves[leaf, 3 * k + 1] + y
     kept[k, 2] = leaves[leaf, 3 * k + 2] + z
     for axis in range(3):
@@ -204,8 +202,8 @@ def _apart(pieces: Any, row: int, k: int, parts: int, centre: Any, box: Any, uni
     """Whether part ``k`` of a fiblet lies beyond one face of a box along the axes of mm: told without its voxels."""
     reach = radius * pieces[row, 3 * parts + 3 + k] * (1.0 + 1e-9)
     for axis in range(3):
-        a = centre[k, axis] + unit * _kept(pieces[row, 3 * k + axis])
-        b = centre[k + 1, axis] + unit * _kept(pieces[row, 3 * k + 3 + axis])
+        a = centre[k, axis] + unit * _signed_byte(pieces[row, 3 * k + axis])
+        b = centre[k + 1, axis] + unit * _signed_byte(pieces[row, 3 * k + 3 + axis])
         low, high = box[0, axis] - reach, box[1, axis] + reach
         if (a < low and b < low) or (a > high and b > high):
             return True

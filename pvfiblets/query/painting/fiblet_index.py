@@ -28,8 +28,6 @@ from ...errors import FormatError
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["FibletIndex", "fiblets_of_streamlines", "index_of"]
-
 Ints = npt.NDArray[np.int64]
 CHUNK = 1 << 22  # fiblets sorted together
 LEAF = 32  # fiblets of a leaf; also said where kernels are compiled

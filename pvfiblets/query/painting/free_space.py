@@ -10,8 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["FAR", "FreeSpace"]
-
 FAR = 16  # greatest stored distance; larger ones are stored as this
 LARGE = 1 << 18  # voxels of a box from which distances are stored more coarsely
 

@@ -17,8 +17,6 @@ from ...codec.kernels.capsule_kernels import end_part
 from ...codec.kernels.decode_kernels import decode_one
 from ...codec.layout import PAGE_BITS
 
-__all__ = ["LEAF", "chords", "leaf_boxes", "leaf_pieces", "near_leaves", "next_anchor", "sort_once", "sort_parts"]
-
 LEAF = 32
 BLOCK = 1024
 ROWS = 65  # points that a record can name, and the next fiblet's first

@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from ..density.voxel_grid import VoxelGrid
     from .painter import RegionPainter, Stroke
 
-__all__ = ["LiveRegion", "LiveRegions"]
-
 Ints = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 

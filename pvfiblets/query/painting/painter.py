@@ -22,8 +22,6 @@ from ..density.voxel_grid import VoxelGrid, grid_like
 from ..regions.labels import Labels
 from ..regions.placement import finite_vector, positive
 
-__all__ = ["PaintedRegion", "RegionPainter", "Stroke"]
-
 Ints = npt.NDArray[np.int64]
 Flags = npt.NDArray[np.bool_]
 MOST_STEPS = 200  # strokes that can be undone

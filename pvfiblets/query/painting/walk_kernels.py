@@ -13,9 +13,6 @@ from ...codec.layout import PAGE_BITS
 from ..density.voxel_walk_kernels import walk, within
 from .index_kernels import ROWS, next_anchor
 
-__all__ = ["ANY", "BAD", "CHANGED", "DAMAGED", "FIRST", "HERE", "LAST", "OUT", "apply", "in_order", "lines_of", "look",
-           "passes"]  # fmt: skip
-
 ANY, OUT, FIRST, LAST = 1, 2, 4, 8
 """Flags of a fiblet: some position lies in the region, some does not, its first point does, its last point does."""
 BAD, DAMAGED = 255, -(1 << 62)

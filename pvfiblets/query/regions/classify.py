@@ -42,8 +42,6 @@ if TYPE_CHECKING:
     from .fields import Field
     from .region import Region
 
-__all__ = ["Packed", "classify", "classify_ball", "pack"]
-
 Array = npt.NDArray[np.float64]
 
 _PLANE, _SLAB, _BOX, _SPHERE, _SURFACE, _LABELS = range(6)

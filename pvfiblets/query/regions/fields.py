@@ -24,8 +24,6 @@ import numpy.typing as npt
 
 from .field_kernels import block_states, squared_distances
 
-__all__ = ["CELLS", "MOST_VALUES", "Field", "label_field", "rounded_towards_zero", "surface_grid"]
-
 Array = npt.NDArray[np.float64]
 
 CELLS = 64

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from .fields import Field
     from .surfaces import Mesh
 
-__all__ = ["Labels", "Volume"]
-
 Array = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Bounds", "finite_vector", "frame_about", "positions", "positive"]
-
 Array = npt.NDArray[np.float64]
 
 

@@ -21,8 +21,6 @@ from .placement import Bounds, positions
 if TYPE_CHECKING:
     from .shapes import Shape
 
-__all__ = ["AND", "MAX_LEAVES", "MAX_OPS", "MAX_STACK", "NOT", "OR", "Region"]
-
 Array = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 

@@ -9,8 +9,6 @@ from ...images.files import SUFFIXES
 if TYPE_CHECKING:
     from .region import Region
 
-__all__ = ["parse_region"]
-
 FORMS = "sphere:X,Y,Z,RADIUS, box:XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX (mm), or IMAGE, or IMAGE:LABEL,LABEL"
 
 

@@ -21,8 +21,6 @@ import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
 
-__all__ = ["build_cells", "build_tree", "distances", "nodes_of_grid", "segment_crossings", "winding", "winding_number"]
-
 _BLOCK = 1024
 _FEW = 4  # triangles of a leaf of the tree
 _DEEPEST = 64
@@ -255,7 +253,7 @@ def _edge_square(px: float, py: float, pz: float, ex: float, ey: float, ez: floa
 
 
 @kernel
-def triangle_square(points: Any, a: int, b: int, c: int, x: float, y: float, z: float) -> float:
+def _triangle_square(points: Any, a: int, b: int, c: int, x: float, y: float, z: float) -> float:
     """Squared distance from a triangle: from its edges or, where the foot of the perpendicular is inside, its plane."""
     # Degenerate ones have no foot inside (the comparisons are strict) and are their edges.
     ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
@@ -279,7 +277,7 @@ def nearest(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, gue
     """Squared distance and nearest triangle; ``guess`` is looked at first. ``stack``, ``reach``: (64,) for scratch."""
     # With a `share` below 1 no triangle is nearer than that share of the square that is found.
     found = guess
-    best = triangle_square(points, triangles[guess, 0], triangles[guess, 1], triangles[guess, 2], x, y, z)
+    best = _triangle_square(points, triangles[guess, 0], triangles[guess, 1], triangles[guess, 2], x, y, z)
     stack[0], reach[0] = 0, _box_square(boxes, 0, x, y, z)
     waiting = 1
     while waiting > 0:
@@ -291,7 +289,7 @@ def nearest(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, gue
         if left < 0:
             for k in range(-1 - left, right):
                 t = order[k]
-                square = triangle_square(points, triangles[t, 0], triangles[t, 1], triangles[t, 2], x, y, z)
+                square = _triangle_square(points, triangles[t, 0], triangles[t, 1], triangles[t, 2], x, y, z)
                 if square < best:
                     best, found = square, t
             continue

@@ -15,8 +15,6 @@ from .shapes import SURFACE, Shape
 if TYPE_CHECKING:
     from .fields import Field
 
-__all__ = ["Mesh", "Surface"]
-
 Array = npt.NDArray[np.float64]
 Corners = npt.NDArray[np.int64]
 

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from ...streamlines import Streamlines
 
-__all__ = ["Criterion", "as_criterion", "point_words", "rank_words", "streamline_mask", "stretch"]
-
 Words = npt.NDArray[np.uint32]
 Mask = npt.NDArray[np.bool_]
 SLICE = 1 << 22  # points of a mapped array that are looked at together
@@ -72,14 +70,14 @@ def point_words(fiblets: FibletSet | Streamlines, criteria: Iterable[Criterion |
             # Whole words: SLICE is a multiple of 32. A copy, so that mapped arrays need no kernel of their own.
             part, piece = words[a // 32 : (min(a + SLICE, n) + 31) // 32], codes[a : a + SLICE]
             if table is not None:
-                keep_codes(np.array(piece), _kept(table, criterion), part)
+                keep_codes(np.array(piece), _meets(table, criterion), part)
             else:
                 number = np.array(piece, np.float64)
                 keep_values(number, float(criterion.lo), float(criterion.hi), criterion.keep_nan, part)
     return words
 
 
-def _kept(values: npt.NDArray[Any], criterion: Criterion) -> Mask:
+def _meets(values: npt.NDArray[Any], criterion: Criterion) -> Mask:
     number = values.astype(np.float64)
     with np.errstate(invalid="ignore"):
         found: Mask = (number >= criterion.lo) & (number <= criterion.hi)
@@ -104,7 +102,7 @@ def streamline_mask(fiblets: FibletSet | Streamlines, criteria: Iterable[Criteri
             raise ValueError(
                 f"values of shape {number.shape} for {len(mask)} streamlines; one number for each is needed"
             )
-        mask &= _kept(number, criterion)
+        mask &= _meets(number, criterion)
     return mask
 
 

@@ -10,8 +10,6 @@ import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
 
-__all__ = ["find_similar"]
-
 BLOCK = 256  # streamlines a thread looks at in one go
 
 

@@ -15,8 +15,6 @@ from ...codec.layout import PAGE, unpack
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["anchor_points", "end_directions", "end_points", "similar_ends"]
-
 Ints = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]

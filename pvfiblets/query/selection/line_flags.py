@@ -12,8 +12,6 @@ from .point_flags import ALL, ANY, FIRST, LAST, Sampling, check_sampling
 if TYPE_CHECKING:
     from ..regions.region import Region
 
-__all__ = ["line_flags"]
-
 SEGMENTS = 1 << 16  # tested together
 
 

@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from ..regions.region import Region
 
-__all__ = ["FibletBalls", "iter_balls", "region_flags"]
-
 Ints = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]

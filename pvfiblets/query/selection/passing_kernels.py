@@ -13,9 +13,6 @@ from ...codec.kernels.capsule_kernels import end_part
 from ..regions.classify import classify_ball
 from .point_flags import ALL, ANY, FIRST, LAST
 
-__all__ = ["balls", "label_points", "merge", "merge_segments", "open_segments", "reduce_fiblets", "run_sides",
-           "settle"]  # fmt: skip
-
 RUN = 8  # consecutive segments that are settled together
 
 
@@ -48,7 +45,7 @@ def _coordinate(anchors: Any, low: Any, fine: Any, f: int, axis: int) -> float:
 
 
 @kernel
-def _told(state: int, begin: int, end: int, flags: int) -> int:
+def _flags_of_fiblet(state: int, begin: int, end: int, flags: int) -> int:
     """Flags of a streamline once it is known that all points of one fiblet are in (1) or out (-1)."""
     if state < 0:
         return flags & ~ALL
@@ -77,7 +74,7 @@ def settle(states: Any, anchors: Any, ranks: Any, wanted: Any, bits: int, flags:
             found = np.int64(flags[rank])
             while i < stop and ranks[i] == rank:
                 if states[i] != 0:
-                    found = _told(states[i], anchors[i, 1] >> 30 & 1, anchors[i, 1] >> 31, found)
+                    found = _flags_of_fiblet(states[i], anchors[i, 1] >> 30 & 1, anchors[i, 1] >> 31, found)
                 i += 1
             known = wanted[rank]
             if known:

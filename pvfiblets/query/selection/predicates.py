@@ -22,18 +22,6 @@ from .point_flags import ALL, ANY, FIRST, LAST, Sampling, check_sampling
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = [
-    "Condition",
-    "Ends",
-    "FlagsOf",
-    "Listed",
-    "Predicate",
-    "ends_in",
-    "passes",
-    "select",
-    "stays_in",
-]
-
 Mask = npt.NDArray[np.bool_]
 Flags = npt.NDArray[np.uint8]
 Ends = Literal["any", "both", "first", "last"]

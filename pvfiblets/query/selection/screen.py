@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from ..regions.shapes import Region
 
-__all__ = ["Under", "area_distances", "ends_under_polygon", "under_polygon"]
-
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 

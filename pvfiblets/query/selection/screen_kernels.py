@@ -100,7 +100,7 @@ def _project(matrix: Any, points: Any, i: int, clip: Any) -> None:
 
 
 @kernel
-def _kept_part(points: Any, i: int, j: int, planes: Any) -> Any:
+def _part_inside(points: Any, i: int, j: int, planes: Any) -> Any:
     """Part of the segment from point ``i`` to ``j`` on the kept side of all planes: ``(t0, t1)``, t0 > t1 if none."""
     t0, t1 = 0.0, 1.0
     for k in range(len(planes)):
@@ -122,7 +122,7 @@ def _kept_part(points: Any, i: int, j: int, planes: Any) -> Any:
 def _segment(points: Any, i: int, j: int, matrix: Any, planes: Any, size: Any, polygon: Any, tolerance: float,
              work: Any) -> Any:  # fmt: skip
     """Whether a segment is hit; where the first and the last place lie (0 to 1); their depths (-1 to 1)."""
-    t0, t1 = _kept_part(points, i, j, planes)
+    t0, t1 = _part_inside(points, i, j, planes)
     if t0 > t1:
         return False, 0.0, 0.0, 0.0, 0.0
     p, q, a, b = work[0], work[1], work[2], work[3]

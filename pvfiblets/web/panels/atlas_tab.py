@@ -16,8 +16,6 @@ from pvfiblets.web.panels.elements import fold, html, v3
 from pvfiblets.web.panels.filter_regions import condition, flat
 from pvfiblets.web.session.document import LINES, free_name
 
-__all__ = ["AtlasActions", "build", "over"]
-
 HOWS = {"passes": "pass", "ends_in": "end in"}
 MOST_ROWS = 2000
 SHOWN = 40  # rows of the list at once

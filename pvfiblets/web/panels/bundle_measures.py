@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from pvfiblets.query.measures.table import Table
     from pvfiblets.web.session.document import Bundle
 
-__all__ = ["FORMATS", "MeasureActions", "build"]
-
 FORMATS = ("csv", "tsv", "parquet")  # of the tables that are fetched
 PROFILED = 24  # bundles in one chart
 MEASURED = 2000  # bundles in one table

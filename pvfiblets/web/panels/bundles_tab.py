@@ -13,8 +13,6 @@ from pvfiblets.web.panels.elements import eye, html, v3
 from pvfiblets.web.panels.writing import EXPORTS
 from pvfiblets.web.session.document import LINES
 
-__all__ = ["BundleActions", "build"]
-
 LISTED = 300  # rows of the list; more are counted, and found by their names
 
 MANY = 20  # bundles beyond which one looks for them by name

@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
 
-__all__ = ["MOST_ROWS", "profile_csv", "selection_csv", "table_text"]
-
 MOST_ROWS = 100_000
 PIECE = 5000
 _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")

@@ -28,8 +28,6 @@ from pvfiblets.web.session.document import LINES
 if TYPE_CHECKING:
     from pvfiblets.web.scene.loading import Cancel, Progress
 
-__all__ = ["ExportActions"]
-
 PLACES = ("folder", "computer")
 KEPT = 4  # downloadable files; older ones are dropped, temporary ones removed
 LARGEST = 2048 * MEBIBYTE  # largest size of a temporary file for download, bytes

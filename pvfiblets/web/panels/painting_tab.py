@@ -18,8 +18,6 @@ from pvfiblets.web.scene.painted import TOOLS
 from pvfiblets.web.session.document import LINES
 from pvfiblets.web.session.painting import USES
 
-__all__ = ["PAINTING", "PaintActions", "build", "over"]
-
 PAINTING = f"{list(TOOLS)}.includes(tool)"  # whether a tool that paints is in hand, for the page
 
 ICONS = (

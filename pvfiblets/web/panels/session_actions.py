@@ -12,8 +12,6 @@ from pvfiblets.web.background_work import BackgroundWork
 from pvfiblets.web.scene.loading import Cancelled
 from pvfiblets.web.session import files as session
 
-__all__ = ["SESSION", "SessionActions"]
-
 logger = logging.getLogger("pvfiblets.web")
 
 SESSION = ".json"  # the suffix of sessions

@@ -13,8 +13,6 @@ from typing import Any
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.panels.charts import short
 
-__all__ = ["SlideActions"]
-
 FILTERS = ("region", "handle", "criterion", "share")
 SETTLED = 3.0  # seconds without a word from the slider after which the page is brought in step
 

@@ -22,8 +22,6 @@ from pvfiblets.web.values import colour, mapping, shown, text, truth
 if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
 
-__all__ = ["CONDITION", "BundleSync", "SceneBundles", "check_bundles"]
-
 CONDITION = "bundles"
 MOST = 20_000
 LONGEST = 120

@@ -14,8 +14,6 @@ from pvfiblets.web.values import mapping, number, numbers, shown, truth
 if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
 
-__all__ = ["LARGEST_PICTURE", "VIEWS", "Cameras", "check_camera"]
-
 VIEWS = tuple(DIRECTIONS)  # names of the directions that one can look from
 
 _LETTERS = (("R", "L"), ("A", "P"), ("S", "I"))

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.slicing import Slicing
     from pvfiblets.web.session.document import Layer
 
-__all__ = ["Canvas"]
-
 CONDITION = "painted"
 OPACITY = 0.55
 

@@ -14,8 +14,6 @@ from pvfiblets.images.files import stem_of
 from pvfiblets.slices.image import SliceImage, as_slice_image
 from pvfiblets.slices.labels import LabelTable, as_label_table
 
-__all__ = ["LabelledImage", "facts_of", "read_image", "table_beside", "with_table"]
-
 LARGEST = 4 << 20  # bytes of a table
 BESIDE = (".tsv", ".ctab", ".label", ".lbl")
 """Suffixes of tables that are taken without being asked for: BIDS lays them beside its images under the same name."""

@@ -20,8 +20,6 @@ from pvfiblets.web.scene.glyph_layers import GLYPHS, VECTORS
 from pvfiblets.web.scene.glyph_layers import ROWS as GLYPH_ROWS
 from pvfiblets.web.scene.properties import Choices, Property
 
-__all__ = ["IMAGE", "MESH", "TRACTOGRAM", "TUBES", "VOLUME", "value_names"]
-
 
 def value_names(fiblets: Any) -> list[str]:
     """Names of numbers that fiblets have, per streamline or per point."""

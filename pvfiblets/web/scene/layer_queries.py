@@ -14,8 +14,6 @@ from pvfiblets.web.values import plain, shown, whole
 if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
 
-__all__ = ["LayerQueries"]
-
 MOST_POINTS = 4_000_000  # greatest number of values in a histogram; of larger data an even share
 
 _KEPT = 64  # histograms

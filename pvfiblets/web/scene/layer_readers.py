@@ -9,8 +9,6 @@ from pvfiblets import formats
 from pvfiblets.formats.registry import UnknownFormatError
 from pvfiblets.web.scene.file_kinds import MESHES, VOLUMES, VTK_SUFFIXES, read_vtk
 
-__all__ = ["read_colours", "read_fixels", "read_mesh", "read_several", "read_tubes", "volume_facts"]
-
 LARGEST_AS_TUBES = 5_000_000  # points
 
 
@@ -31,10 +29,10 @@ def read_tubes(place: Path) -> tuple[Any, dict[str, Any]]:
 
 def read_fixels(place: Path) -> tuple[Any, dict[str, Any]] | None:
     """Return the image of a file of a fixel directory of MRtrix's, and its facts; None of any other."""
-    from pvfiblets.slices.fixels import files_beside
+    from pvfiblets.slices.fixels import sibling_files
     from pvfiblets.web.scene.label_images import facts_of, read_image
 
-    image = read_image(place) if files_beside(place) else None
+    image = read_image(place) if sibling_files(place) else None
     return None if image is None or image.fixels is None else (image, facts_of(image))
 
 
@@ -67,7 +65,7 @@ def read_mesh(place: Path) -> Any:
 def read_colours(place: Path) -> Any:
     """Return a volume to be sampled along lines, from the same numbers as a script's ``scalars=path`` gives."""
     from pvfiblets.images.sources import as_image
-    from pvfiblets.plotting.fiblets.volume_sources import as_volume
+    from pvfiblets.plotting.fiblets.sources import as_volume
 
     return as_volume(as_image(read_vtk(place) if place.name.lower().endswith(VTK_SUFFIXES) else place))
 

@@ -42,8 +42,6 @@ from pvfiblets.web.scene.layer_readers import (
 from pvfiblets.web.session.document import LINES, Source
 from pvfiblets.web.values import shown
 
-__all__ = ["Cancelled", "Files", "Loaded", "Watch"]
-
 MOST_REMEMBERED = 16  # exports whose points are not coded again
 
 Progress = Callable[[str, float], None]  # called with the step's name and its finished share, from 0 to 1

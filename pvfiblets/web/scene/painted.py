@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.loading import Loaded
     from pvfiblets.web.scene.scene import Scene
 
-__all__ = ["TOOLS", "ScenePainting"]
-
 TOOLS = ("brush", "erase", "fill", "outline", "sphere", "grow")
 WIDEST = 100.0  # mm
 MOST_PLACES = 600

@@ -9,8 +9,6 @@ from typing import Any
 from pvfiblets.plotting.settings import SAME, Row, Setting
 from pvfiblets.web.values import colour, number, numbers, shown, text, truth, whole
 
-__all__ = ["TYPES", "Property"]
-
 TYPES = ("choice", "number", "range", "numbers", "colour", "bool", "text")
 """``range`` is two numbers, the low one first; ``numbers`` a list of them."""
 

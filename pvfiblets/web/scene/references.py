@@ -29,7 +29,7 @@ _GLB_JSON = 0x4E4F534A
 
 def check_references(place: Path, folders: list[Path]) -> None:
     """Refuse a file that names another one outside of some folders."""
-    beside = [one for one in fixels.files_beside(place) if one != place]
+    beside = [one for one in fixels.sibling_files(place) if one != place]
     named = [one.name for one in beside] + _named(place)
     for one in beside if all(_inside(place.parent, name, folders) for name in named) else ():
         named += _named(one)

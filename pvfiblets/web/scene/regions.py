@@ -16,8 +16,6 @@ from pvfiblets.web.values import shown, text
 if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
 
-__all__ = ["SceneRegions"]
-
 SHARE = 0.06  # of the scene's longest side: half the width of a new region
 APART = 3.0  # half widths between the middles of a region and of the next
 

@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-__all__ = ["Place", "Wanted", "arrange"]
-
 Measure = Callable[[str, int], float]
 """Function from a text and the size of its letters to its width, in pixels of the window."""
 

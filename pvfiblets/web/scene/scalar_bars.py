@@ -12,8 +12,6 @@ from pvfiblets.plotting.scalar_bar_labels import label_format, label_text
 from pvfiblets.web.scene.scalar_bar_layout import MOST_LABELS, Place, Wanted, arrange
 from pvfiblets.web.session.document import Layer
 
-__all__ = ["Bars", "bar_arguments", "bar_calls", "bars_of", "contrast"]
-
 MOST_BARS = 6
 
 

@@ -55,8 +55,6 @@ from pvfiblets.web.session.document import (
 from pvfiblets.web.session.store import Store
 from pvfiblets.web.values import colour, text
 
-__all__ = ["Change", "Scene"]
-
 MOST_LAYERS = 64
 MOST_VALUES = 64  # files of values of one layer
 LONGEST_NAME = 1024  # largest number of characters of a layer's name

@@ -24,11 +24,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.actors import Colours
     from pvfiblets.web.scene.label_images import LabelledImage
 
-__all__ = [
-    "CONVENTIONS", "LAYOUTS", "NAMES", "VIEWS", "SliceView", "Slicing", "angles_of", "check_view", "image_looks",
-    "normal_of", "ready_views", "to_3d_view",
-]  # fmt: skip
-
 LAYOUTS = {
     "3d": "3-D",
     "beside": "3-D and three slices",

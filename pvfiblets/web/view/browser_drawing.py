@@ -18,8 +18,6 @@ from pvfiblets import page
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.view.sent_scene import LARGEST, MOST, SentScene, SentScenes
 
-__all__ = ["BrowserDrawing"]
-
 logger = logging.getLogger("pvfiblets.web")
 
 SOFTWARE = re.compile(r"swiftshader|llvmpipe|softpipe|software|basic render", re.IGNORECASE)

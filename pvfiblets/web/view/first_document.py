@@ -9,8 +9,6 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-__all__ = ["first_document"]
-
 WAITING = (
     '<div id="app"><div style="position: fixed; inset: 0; display: grid; place-items: center; background: #121212; '
     'color: #ccc; font: 16px/1.5 system-ui, sans-serif">Loading…</div></div>'

@@ -11,8 +11,6 @@ from __future__ import annotations
 from collections import deque
 from typing import NamedTuple
 
-__all__ = ["BUDGET", "LEVELS", "Level", "Pace"]
-
 BUDGET = 0.075  # seconds that a moving frame may take to draw; browser and network take theirs beside it
 ROOM = 0.6  # of the budget; a finer level is taken where it costs less than that
 

@@ -12,8 +12,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Sight", "dragged", "mark"]
-
 CORNERS = 32  # of a circle
 THINNEST = 1e-3  # of a box: a face is not dragged nearer than this share of its side to the other
 _Floats = NDArray[np.float64]

@@ -13,8 +13,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-__all__ = ["Fingers"]
-
 GESTURES = ("Pinch", "Pan", "Rotate")
 LEAST = 8.0  # pixels between fingers: nearer ones have neither a sure distance nor a sure direction
 MOST = 8.0  # times that one event may zoom

@@ -34,8 +34,6 @@ from ...gl.uniform_struct import Field, UniformStruct
 if TYPE_CHECKING:
     from ....codec.fibletset import FibletSet
 
-__all__ = ["CHUNK_BLOCK", "Chunk", "ChunkPlan", "padded", "plan_chunks", "reserve_buffer", "storage_buffer"]
-
 CHUNK_BLOCK = UniformStruct(
     "Chunk",
     Field("chunk_fiblets", "uint", "fiblets here"),

@@ -22,8 +22,6 @@ from .chunks import CLUSTER, CLUSTER_BIAS, CLUSTER_STEP
 if TYPE_CHECKING:
     from ....codec.fibletset import FibletSet
 
-__all__ = ["cluster_words"]
-
 SLICE = 1 << 19  # fiblets at a time
 BITS = 10  # of the key along each axis
 

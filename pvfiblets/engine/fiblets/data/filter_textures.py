@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ....codec.fibletset import FibletSet
     from .chunks import Chunk
 
-__all__ = ["MASK_BITS", "Filter", "FilterTextures"]
-
 
 MASK_BITS = 12  # A row of a mask holds two to the power of this many words of 32 bits; the sources know it, too
 

@@ -21,8 +21,6 @@ from ...gl.shaders import Programs
 from .chunks import Chunk, storage_buffer
 from .data_textures import DataTextures, set_data_samplers
 
-__all__ = ["ComputeMeasurer", "FeedbackMeasurer", "Measurer"]
-
 BATCH = 1 << 16  # fiblets measured at a time
 
 

@@ -34,8 +34,6 @@ from .chunks import ChunkPlan, plan_chunks
 if TYPE_CHECKING:
     from ....codec.fibletset import FibletSet
 
-__all__ = ["PICTURE", "RESERVE", "Fitted", "MemoryBudget", "free_memory"]
-
 PICTURE = 1920 * 1080  # pixels of the picture that is reckoned with; larger ones live on the reserve
 
 PICTURE_BYTES = 48 * PICTURE  # G-buffer 24; depth buffers, state kept between rounds, pyramid: 24 at most
@@ -56,7 +54,7 @@ class Fitted:
     plans: list[ChunkPlan]  # its chunks
     share: float  # how many of the set's streamlines with points it has: 1.0 for all
 
-    def kept(self) -> FibletSet:
+    def fitting_set(self) -> FibletSet:
         """Return the set to keep once it is on the GPU: a part, without its codes."""
         return self.fiblets if self.share == 1.0 else replace(self.fiblets, codes=np.empty(0, np.uint8))
 
@@ -72,7 +70,7 @@ class MemoryBudget:
     largest: int | None = None  # bytes that all buffers together may have, if the caller limits them
 
     @classmethod
-    def of(cls, ctx: moderngl.Context, gl: GLExtras, limits: Limits, largest: int | None) -> MemoryBudget:
+    def from_context(cls, ctx: moderngl.Context, gl: GLExtras, limits: Limits, largest: int | None) -> MemoryBudget:
         """Ask the driver and the machine."""
         return cls(limits, free_memory(ctx, gl), free_host_memory(), is_software(ctx), largest)
 

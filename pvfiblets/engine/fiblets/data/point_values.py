@@ -37,8 +37,6 @@ from .upload import fill_buffer, rows_of
 if TYPE_CHECKING:
     from ....codec.fibletset import FibletSet
 
-__all__ = ["ValueSources"]
-
 ARC_LENGTH, CURVATURE = "arc_length", "curvature"
 
 Floats = npt.NDArray[np.float64]

@@ -39,8 +39,6 @@ from ...errors import EngineError, GPUMemoryError
 from ...gl.bindings import BLOCKS, SAMPLED
 from ...gl.uniform_struct import Field, UniformStruct
 
-__all__ = ["SAMPLING_BLOCK", "VolumeSource", "VolumeTexture"]
-
 SAMPLING_BLOCK = UniformStruct(
     "Sampling",
     Field("voxel_from_local", "mat4", "voxel indices of (local mm, 1)"),

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ..style import FibletStyle
     from .chunks import Chunk
 
-__all__ = ["CODING_BLOCK", "ROTATIONS_BLOCK", "SharedBlocks", "decoding_features"]
-
 CODING_BLOCK = UniformStruct(
     "Coding",
     Field("anchor_scale", "vec3", "mm per anchor integer, along each axis"),

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ....codec.fibletset import FibletSet
     from .memory_fit import Fitted, MemoryBudget
 
-__all__ = ["SLICE_BYTES", "Show", "fill_buffer", "release_chunks", "rows_of", "upload_chunk", "upload_fitting"]
-
 SLICE_BYTES = 1 << 24  # bytes that are copied at a time
 
 Show = Callable[[int], object]

@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from ...gl.shaders import Programs
     from ...view import View
 
-__all__ = ["SLICES", "Gather", "Gathered", "SliceDistances", "slice_edges"]
-
 SLICES = 4  # sums of a pixel behind its nearest line; the shaders' three edges between them must agree
 
 GROWTH = 2.5  # ratio of each slice's depth to the depth of the one before

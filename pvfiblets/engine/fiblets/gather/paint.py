@@ -10,8 +10,6 @@ from typing import Any
 from ....colour_modes import MODES
 from ...gl.bindings import GATHERING
 
-__all__ = ["Paint", "set_uniforms"]
-
 MOST_OPAQUE = 0.999
 """Opacity of a line beyond which it counts as no more opaque (``shaders/fiblets/gather/paint_weight.glsl``)."""
 

@@ -43,8 +43,6 @@ if TYPE_CHECKING:
     from ....codec.fibletset import FibletSet
     from ..sample_layers import Rectangle, SampledLines
 
-__all__ = ["ClusterRenderer"]
-
 TICK = 0.5  # seconds from look to look whether there are workers left
 LOOK = 0.05  # seconds for which a window stands still while samples of its picture are being drawn
 GRACE = 10.0  # seconds in which a cluster without workers may get some: those that die are started again
@@ -67,7 +65,7 @@ class ClusterRenderer(NearestOnly):
         check_choices(pipeline=pipeline)
         super().__init__(ctx, CONSTANTS)
         self.pipeline = pipeline
-        self._cluster = client_of(cluster)
+        self._cluster = _client_of(cluster)
         self._whole = fiblets
         count = count or len(self._workers())
         key, path = source_of(fiblets)
@@ -89,13 +87,13 @@ class ClusterRenderer(NearestOnly):
         self._costs: tuple[Cost, ...] = ()
         self._left = 0
 
-    def _there(self) -> list[str]:
+    def _present_workers(self) -> list[str]:
         return sorted(self._cluster.scheduler_info(n_workers=-1)["workers"])
 
     def _workers(self) -> list[str]:
         """Return the addresses of the workers that there are; those that are being started again have time for it."""
         until = time.monotonic() + GRACE
-        while not (found := self._there()):
+        while not (found := self._present_workers()):
             if time.monotonic() >= until:
                 raise EngineError("the cluster has no workers; start some, or leave the cluster out to draw here")
             time.sleep(TICK)
@@ -176,9 +174,9 @@ class ClusterRenderer(NearestOnly):
                 self._workers()  # raises where none is left
         if self._root.done():
             self._lack(0)
-            found: SparsePicture = _told(self._root)
+            found: SparsePicture = _result_of(self._root)
             return found
-        done = [_told(one) for one in self._drawing if one.done()]
+        done = [_result_of(one) for one in self._drawing if one.done()]
         self._lack(len(self._drawing) - len(done))
         # All may be drawn and not yet put together: then it is this process that does it.
         return reduce(nearer, done) if done else None
@@ -208,7 +206,7 @@ class ClusterRenderer(NearestOnly):
             if not root.done():
                 self._workers()
                 yield
-        write_picture(_told(root), target, adds=adds)
+        write_picture(_result_of(root), target, adds=adds)
 
     def _forget(self) -> None:
         # dask gives up what nobody holds any more; told to cancel, it would stop at tasks that have just ended.
@@ -249,7 +247,7 @@ class ClusterRenderer(NearestOnly):
             return values.range
         each = zip(self._parts, self._sent, strict=True)
         asked = self._submit_each(value_range_of_part, ((part, values, self.pipeline, sent) for part, sent in each))
-        ranges = [_told(one) for one in asked]
+        ranges = [_result_of(one) for one in asked]
         return min(low for low, _ in ranges), max(high for _, high in ranges)
 
     def _facts(self, *, counts: bool) -> dict[str, Any]:  # noqa: ARG002
@@ -281,7 +279,7 @@ def _client_at(address: str) -> Any:
         raise EngineError(f"no scheduler of dask answers at {address} ({error}); start one: dask scheduler") from error
 
 
-def client_of(cluster: Any) -> Any:
+def _client_of(cluster: Any) -> Any:
     """Return the client of a cluster: what is given, or one for an address, the same for the same."""
     if isinstance(cluster, str):
         try:
@@ -295,7 +293,7 @@ def client_of(cluster: Any) -> Any:
     return cluster
 
 
-def _told(future: Any) -> Any:
+def _result_of(future: Any) -> Any:
     """Return a result, or raise what a worker has raised, as an error of the engine where it is none of ours."""
     try:
         return future.result()

@@ -16,8 +16,6 @@ from ...gl.bindings import NEARER_PART
 from ...gl.moderngl_extras import GLExtras
 from ...gl.shaders import Programs
 
-__all__ = ["PartPictures", "PictureTarget"]
-
 
 class PictureTarget:
     """A G-buffer and what draws into it."""
@@ -27,7 +25,7 @@ class PictureTarget:
         self.picture.want_relief(ctx, relief)
         self.picture.want_edges(ctx, edges)
         try:
-            self.framebuffer = ctx.framebuffer(list(textures_of(self.picture).values()))
+            self.framebuffer = ctx.framebuffer(list(_textures_of(self.picture).values()))
         except moderngl.Error as error:
             self.picture.release()
             raise EngineError(f"no memory for a picture of {size[0]} x {size[1]} pixels: {error}") from error
@@ -72,7 +70,7 @@ class PartPictures:
         program, array = self._programs.screen("fiblets/parts/nearer.frag", features)
         there, other = self._kept
         for of, picture in (("kept", there.picture), ("drawn", drawn)):
-            for name, texture in textures_of(picture).items():
+            for name, texture in _textures_of(picture).items():
                 if (sampler := f"{of}_{name}") in program:
                     texture.use(NEARER_PART[sampler])
                     program[sampler] = NEARER_PART[sampler]
@@ -95,7 +93,7 @@ class PartPictures:
         self._key = None
 
 
-def textures_of(picture: GBuffer) -> dict[str, moderngl.Texture]:
+def _textures_of(picture: GBuffer) -> dict[str, moderngl.Texture]:
     """Textures of a picture of fiblets, by name, as they are attached."""
     found = {"depth": picture.depth, "owner": picture.owner, "ids": picture.ids, "position": picture.position}
     if picture.across is not None:

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ....codec.fibletset import FibletSet
     from ...view import Style, View
 
-__all__ = ["Parts", "Stretches", "in_view", "reach_of"]
-
 Box = npt.NDArray[np.float64]  # `(2, 3)` float64: least and greatest coordinates, mm
 
 

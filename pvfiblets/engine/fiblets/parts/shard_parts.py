@@ -23,8 +23,6 @@ from .parts import Box, Parts, Stretches
 if TYPE_CHECKING:
     from ....codec.fibletset import FibletSet
 
-__all__ = ["ShardGroups", "ShardParts", "gpu_bytes_of_shards", "in_memory", "parts_of"]
-
 FETCHED_AT_ONCE = 2  # connections; a third would take bandwidth from the parts in view
 
 

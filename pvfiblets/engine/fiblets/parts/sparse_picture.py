@@ -13,8 +13,6 @@ from ...gbuffer import EMPTY, RELIEF, GBuffer
 if TYPE_CHECKING:
     import moderngl
 
-__all__ = ["Cost", "SparsePicture", "nearer", "read_picture", "write_picture"]
-
 Array = npt.NDArray[Any]
 
 _KINDS = {"u": "<u4", "f": "<f4"}

@@ -52,8 +52,6 @@ if TYPE_CHECKING:
     from ..gather.paint import Paint
     from ..sample_layers import Rectangle, SampledLines
 
-__all__ = ["PARTS", "THINNED_SHARE", "StreamedRenderer", "streamed_renderer"]
-
 PARTS = 12
 """How many parts that are not the even share fit into the memory: few are drawn in fewer calls, many fit it better."""
 
@@ -329,8 +327,8 @@ def streamed_renderer(
 ) -> FibletRenderer | StreamedRenderer:
     """Return a renderer of all of a set if it fits, else one that draws it part by part."""
     gl, pipeline = GLExtras(ctx), choose(ctx, pipeline)
-    limits = Limits.of(ctx, gl, pipeline, options.get("max_buffer_bytes"), options.get("max_groups"))
-    budget = MemoryBudget.of(ctx, gl, limits, max_total_bytes)
+    limits = Limits.from_context(ctx, gl, pipeline, options.get("max_buffer_bytes"), options.get("max_groups"))
+    budget = MemoryBudget.from_context(ctx, gl, limits, max_total_bytes)
     room = budget.room
     if isinstance(fiblets, UnreadSet):
         # Shards that lie elsewhere are fetched as they are looked at, also where all would fit.

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ..data.filter_textures import Filter
     from ..fiblet_drawable import FibletDrawable
 
-__all__ = ["HELD", "PartOfSet", "Request", "draw_part", "merge_parts", "source_of", "value_range_of_part"]
-
 HELD = 4
 
 Found = TypeVar("Found")

@@ -124,27 +124,7 @@ class MarkRange:
 
 
 class ComputePipeline:
-    """Draws chunks into a G-buffer.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    programs : Programs
-    sizes : sequence of int
-        Fiblets of each chunk.
-    max_groups : int
-        Work groups per axis of a dispatch.
-    most : int
-        Fiblets that one call may draw.
-    alike : int, optional
-        Fiblets of a set whose pictures these shall equal in every bit, as this is a part of it: which programs draw
-        goes by their number, and rounding differs from program to program.
-
-    Attributes
-    ----------
-    planned : bool
-        Whether the visibility bits are the last picture's.
-    """
+    """Draws chunks into a G-buffer."""
 
     name = "compute"
 
@@ -152,9 +132,11 @@ class ComputePipeline:
         self,
         ctx: moderngl.Context,
         programs: Programs,
-        sizes: Sequence[int],
-        max_groups: int,
-        most: int,
+        sizes: Sequence[int],  # Fiblets of each chunk
+        max_groups: int,  # Work groups per axis of a dispatch
+        most: int,  # Fiblets that one call may draw
+        # Fiblets of a set whose pictures these shall equal in every bit, as this is a part of it: which programs draw
+        # goes by their number, and rounding differs from program to program
         alike: int | None = None,
     ) -> None:
         self._ctx = ctx
@@ -168,7 +150,7 @@ class ComputePipeline:
             self._forms = [form for form in self._forms if form != "STORED_ROTATIONS"]
         self._shares = [(0, MAX_POINTS)]
         self._raster: GeometryPipeline | None = None
-        self.planned = False
+        self.planned = False  # Whether the visibility bits are the last picture's
         self._n_fiblets = sum(sizes)
         self._one_class = (self._n_fiblets if alike is None else alike) <= FEW
         self._seed_words = -(-self._n_fiblets // SEED_OF)

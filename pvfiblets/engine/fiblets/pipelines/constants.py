@@ -7,21 +7,6 @@ from ...view import MAX_CLIP_PLANES
 from ..data.chunks import CLUSTER, CLUSTER_BIAS, CLUSTER_STEP
 from ..data.filter_textures import MASK_BITS
 
-__all__ = [
-    "CLASSES",
-    "CONSTANTS",
-    "GREATEST_SIDE",
-    "GROUP_WORDS",
-    "LIST_SHARE",
-    "ROUNDS",
-    "SHARES",
-    "TASK_FIBLETS",
-    "TASK_ROUNDS",
-    "THREADS",
-    "VERTICES",
-    "VISIBILITY_WORDS",
-]
-
 CLASSES = 4
 ROUNDS = 8
 GROUP_CLUSTERS = 4

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ..gather.gathering import Gather
     from ..visibility import Visibility
 
-__all__ = ["DrawRequest", "Pipeline", "Sized"]
-
 
 @dataclass(frozen=True)
 class DrawRequest:
@@ -25,61 +23,31 @@ class DrawRequest:
 
     The uniform blocks ``Frame``, ``Coding``, ``ClipPlanes`` (if there are planes) and ``Rotations`` are bound to 0, 1,
     3 and 4 already.
-
-    Attributes
-    ----------
-    chunks : sequence of Chunk
-    target : GBuffer
-    passes : Passes
-        Takes the times.
-    decoding : tuple of str
-        Features (keys of :data:`pvfiblets.engine.gl.shaders.FEATURES`) that the fiblets' records ask for.
-    values : tuple of str
-        Feature of the per-point value.
-    clipping : bool
-        Whether any fiblet may cross the edges of the picture, the near or the far plane.
-    planes : tuple of str
-        ``CLIP_PLANES``, if planes of the caller's may touch anything.
-    detail : tuple of str
-        ``LEVEL_OF_DETAIL``, unless every point is to be drawn.
-    line_width : float
-        Pixels of round brushes; 0 for thin lines and for tubes.
-    segment : callable
-        Returns the pixels that the longest segments in the picture take, roughly.
-    occlusion : Occlusion, optional
-        Tests what earlier depth hides.
-    kept : Visibility
-        The caller's filter and region.
-    tubes, ends, across, edges, samples : tuple of str
-        ``TUBES``, ``LINE_ENDS``, ``CROSS_LINE``, ``EDGES`` and ``SUBSAMPLES``, if asked for. With tubes the uniform
-        block ``Tubes`` is bound too.
-    peel : Peel, optional
-        The picture begins behind these layers.
-    gather : Gather, optional
-        Where all lines are added up, in place of the nearest's picture.
-    adds : bool
-        Whether nearer pixels in the target stay, but for their owner. Only the pipeline ``compute`` can.
     """
 
     chunks: Sequence[Chunk]
     target: GBuffer
-    passes: Passes
+    passes: Passes  # Takes the times
+    # Features (keys of :data:`pvfiblets.engine.gl.shaders.FEATURES`) that the fiblets' records ask for
     decoding: tuple[str, ...]
-    values: tuple[str, ...]
-    clipping: bool
-    planes: tuple[str, ...]
-    detail: tuple[str, ...]
-    line_width: float
-    segment: Callable[[], float]
-    occlusion: Occlusion | None
-    kept: Visibility
+    values: tuple[str, ...]  # Feature of the per-point value
+    clipping: bool  # Whether any fiblet may cross the edges of the picture, the near or the far plane
+    planes: tuple[str, ...]  # ``CLIP_PLANES``, if planes of the caller's may touch anything
+    detail: tuple[str, ...]  # ``LEVEL_OF_DETAIL``, unless every point is to be drawn
+    line_width: float  # Pixels of round brushes; 0 for thin lines and for tubes
+    segment: Callable[[], float]  # Returns the pixels that the longest segments in the picture take, roughly
+    occlusion: Occlusion | None  # Tests what earlier depth hides
+    kept: Visibility  # The caller's filter and region
+    # ``TUBES``, ``LINE_ENDS``, ``CROSS_LINE``, ``EDGES`` and ``SUBSAMPLES``, if asked for. With tubes the uniform
+    # block ``Tubes`` is bound too.
     tubes: tuple[str, ...] = ()
     ends: tuple[str, ...] = ()
     across: tuple[str, ...] = ()
     edges: tuple[str, ...] = ()
     samples: tuple[str, ...] = ()
-    peel: Peel | None = None
-    gather: Gather | None = None
+    peel: Peel | None = None  # The picture begins behind these layers
+    gather: Gather | None = None  # Where all lines are added up, in place of the nearest's picture
+    # Whether nearer pixels in the target stay, but for their owner. Only the pipeline ``compute`` can.
     adds: bool = False
 
     @property

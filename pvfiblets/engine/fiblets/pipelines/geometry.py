@@ -32,9 +32,6 @@ from .constants import SHARES
 from .draw_request import DrawRequest
 from .textured import TexturedPipeline
 
-__all__ = ["GeometryPipeline"]
-
-
 _HANDED_OVER = {"VALUES_ARC_LENGTH", "VALUES_VOLUME"}
 """Values that vertices carry; of a stored one fragments look up the codes."""
 

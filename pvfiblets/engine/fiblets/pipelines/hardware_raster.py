@@ -32,15 +32,10 @@ import moderngl
 from ...errors import EngineError
 from ...gbuffer import EMPTY, GBuffer
 from ...gl.bindings import BETWEEN_ROUNDS, FIBLET_ROUNDS
-from ...gl.depth_texture import depth_texture
-from ...gl.moderngl_extras import GLExtras
+from ...gl.moderngl_extras import GLExtras, depth_texture
 from ...gl.shaders import Programs
 from ..data.chunks import Chunk
 from .draw_request import DrawRequest
-
-__all__ = ["RasterPipeline", "RasterTarget", "SeenTexture"]
-
-
 
 Thing = TypeVar("Thing", moderngl.Texture, moderngl.Framebuffer)
 
@@ -53,37 +48,19 @@ class Memory:
 
 
 class RasterTarget:
-    """A G-buffer's textures as attachments, with a depth buffer.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    target : GBuffer
-    two_rounds : bool
-        Whether to make what two-phase culling keeps between its rounds.
-
-    Attributes
-    ----------
-    target : GBuffer
-    across, edges : moderngl.Texture or None
-        As the G-buffer had them when this was made.
-    first, second : moderngl.Framebuffer
-        For the two rounds; the same without two rounds.
-    kept : moderngl.Texture or None
-        rg32ui: depth key and owner after the first round.
-    """
+    """A G-buffer's textures as attachments, with a depth buffer."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, target: GBuffer, two_rounds: bool) -> None:
         self.target = target
         self._gl = gl
         self._things: list[moderngl.Texture | moderngl.Framebuffer] = []
-        self.kept: moderngl.Texture | None = None
+        self.kept: moderngl.Texture | None = None  # rg32ui: depth key and owner after the first round
         self.across, self.edges = target.across, target.edges
         colours = [target.depth, target.owner, target.ids, target.position]
         colours += [texture for texture in (target.across, target.edges) if texture is not None]
         try:
             self.depth = self._keep(depth_texture(ctx, gl, target.size))
+            # Framebuffers of the two rounds; the same without two rounds.
             self.first = self.second = self._keep(ctx.framebuffer(colours, self.depth))
             if two_rounds:
                 later = self._keep(depth_texture(ctx, gl, target.size))
@@ -120,20 +97,7 @@ class RasterTarget:
 
 
 class SeenTexture:
-    """Which fiblets own a pixel of the last picture: r8ui, a texel for each fiblet, in rows of a power of two.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    n_fiblets : int
-
-    Raises
-    ------
-    EngineError
-        If there are more fiblets than the largest texture has texels, or memory does not suffice.
-    """
+    """Which fiblets own a pixel of the last picture: r8ui, a texel for each fiblet, in rows of a power of two."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, n_fiblets: int) -> None:
         self._ctx = ctx
@@ -191,16 +155,7 @@ class SeenTexture:
 
 
 class RasterPipeline(abc.ABC):
-    """Draws chunks into a G-buffer through OpenGL's rasteriser.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    n_fiblets : int
-        In all chunks.
-    """
+    """Draws chunks into a G-buffer through OpenGL's rasteriser."""
 
     name: str
     features: tuple[str, ...] = ("TEXTURE_DATA",)

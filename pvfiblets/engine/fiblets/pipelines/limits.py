@@ -11,8 +11,6 @@ from ...gl.passes import work_groups
 from ...gl.work_limits import WorkLimits
 from .constants import CLASSES, LIST_SHARE, VISIBILITY_WORDS
 
-__all__ = ["MESH", "TEXTURED", "Limits"]
-
 TEXTURED = ("tessellation", "geometry")
 """Pipelines that read data through buffer textures, and need no storage buffers."""
 
@@ -29,33 +27,15 @@ _VISIBILITY_BYTES = {"texture": 32, "buffer": 4 * (VISIBILITY_WORDS + 32 * CLASS
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits of a pipeline on a context; made by :meth:`of`.
+    """Limits of a pipeline on a context; made by :meth:`from_context`."""
 
-    Attributes
-    ----------
-    buffer_bytes : int
-        Of one buffer of records.
-    groups : int
-        Compute work groups along one axis; 0 where there are none.
-    marks : int
-        Fiblets with a visibility bit in the pipeline.
-    marked_by : str
-        Name of the resource that holds them.
-    fiblets : int
-        Of one buffer of records, and with that of one call (:mod:`pvfiblets.engine.gl.work_limits`).
-    call : int
-        Fiblets of one call, where a buffer has several.
-    clustered : bool
-        Whether chunks have clusters (:mod:`pvfiblets.engine.fiblets.data.clusters`).
-    """
-
-    buffer_bytes: int
-    groups: int
-    marks: int
-    marked_by: str
-    fiblets: int
-    call: int = LARGEST
-    clustered: bool = False
+    buffer_bytes: int  # Of one buffer of records
+    groups: int  # Compute work groups along one axis; 0 where there are none
+    marks: int  # Fiblets with a visibility bit in the pipeline
+    marked_by: str  # Name of the resource that holds them
+    fiblets: int  # Of one buffer of records, and with that of one call (:mod:`pvfiblets.engine.gl.work_limits`)
+    call: int = LARGEST  # Fiblets of one call, where a buffer has several
+    clustered: bool = False  # Whether chunks have clusters (:mod:`pvfiblets.engine.fiblets.data.clusters`)
 
     def visibility_bytes(self, n_fiblets: int) -> int:
         """Bytes of those marks, and of the mesh pipeline's marks of open fiblets."""
@@ -63,11 +43,11 @@ class Limits:
         return -(-n_fiblets // 32) * (_VISIBILITY_BYTES[self.marked_by] + opened)
 
     @classmethod
-    def of(
+    def from_context(
         cls, ctx: moderngl.Context, gl: GLExtras, pipeline: str, buffer_bytes: int | None, groups: int | None
     ) -> Limits:
         """Query the driver, and take the lesser limit."""
-        work, listed = WorkLimits.of(ctx).fiblets, WorkLimits.of(ctx).listed
+        work, listed = WorkLimits.from_context(ctx).fiblets, WorkLimits.from_context(ctx).listed
         side = gl.get_integer("GL_MAX_TEXTURE_SIZE")
         if pipeline in TEXTURED:
             # Of the buffers that decide how many fiblets a chunk holds, every texel has four bytes.

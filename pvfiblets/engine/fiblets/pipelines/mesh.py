@@ -40,8 +40,6 @@ from .constants import TASK_FIBLETS, THREADS
 from .draw_request import DrawRequest
 from .hardware_raster import Memory, RasterPipeline
 
-__all__ = ["MeshPipeline"]
-
 logger = logging.getLogger("pvfiblets.engine")
 
 PROMISED_TASKS = 65535
@@ -50,19 +48,7 @@ _TASK_STAGE = 0x80  # of GL_SUBGROUP_SUPPORTED_STAGES_KHR
 
 
 class MeshPipeline(RasterPipeline):
-    """Draws chunks through task and mesh stages.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        With GL_EXT_mesh_shader or GL_NV_mesh_shader.
-    gl : GLExtras
-    programs : Programs
-    n_fiblets : int
-        In all chunks.
-    serial : bool
-        Whether one invocation decodes a fiblet.
-    """
+    """Draws chunks through task and mesh stages; if ``serial``, one invocation decodes a fiblet."""
 
     def __init__(
         self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, n_fiblets: int, *, serial: bool = False

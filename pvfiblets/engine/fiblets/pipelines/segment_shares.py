@@ -11,8 +11,6 @@ from ...errors import EngineError
 from ...gl.passes import GROUP_SIZE
 from .constants import GROUP_WORDS
 
-__all__ = ["SOFTWARE_ITERATIONS", "WIDEST_IN_SOFTWARE", "segment_shares"]
-
 SOFTWARE_ITERATIONS = 60_000
 """What one invocation may loop under Mesa's software OpenGL, which leaves all loops of a shader for good after 65,535
 iterations in sum and says nothing."""

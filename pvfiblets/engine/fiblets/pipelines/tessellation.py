@@ -13,8 +13,6 @@ import moderngl
 from .draw_request import DrawRequest
 from .textured import TexturedPipeline
 
-__all__ = ["TessellationPipeline"]
-
 
 class TessellationPipeline(TexturedPipeline):
     """Draws chunks through tessellation stages; parameters as for :class:`RasterPipeline`."""

@@ -15,8 +15,6 @@ from ..data.data_textures import DataTextures, set_data_samplers
 from .draw_request import DrawRequest
 from .hardware_raster import RasterPipeline
 
-__all__ = ["TexturedPipeline"]
-
 
 class TexturedPipeline(RasterPipeline):
     """Draws by stages with data from buffer textures, and fiblets from ``fiblets/hardware_raster/survivors.vert``."""

@@ -18,10 +18,6 @@ from ...timing import timing
 from ...window import Window
 from ..codec.data_sets import files_of
 
-__all__ = [
-    "OURS", "STUDY", "AntialiasStudy", "PictureWindow", "Subject", "Variant", "differences", "subjects", "variants",
-]  # fmt: skip
-
 SIZE, QUICK_SIZE, FILE_SIZE = (800, 600), (320, 240), (1000, 800)
 SCREEN = (1920, 1080)
 SEGMENTS, QUICK_SEGMENTS = (1_100_000, 6_000_000), (60_000,)  # of synthetic brains

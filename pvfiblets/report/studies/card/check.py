@@ -18,8 +18,6 @@ from typing import Any
 from ...process import CellProcess, ended
 from .findings import FAILS, MISSING, Finding
 
-__all__ = ["MODULE", "PATIENCE", "CardCheck", "findings_of", "run_check"]
-
 PATIENCE = 300.0
 """Seconds without a word after which a part counts as hanging: some drivers compile for a minute."""
 

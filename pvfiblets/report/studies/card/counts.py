@@ -13,8 +13,6 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["counted"]
-
 SHIFT = 23  # of 256
 
 Array = npt.NDArray[np.float64]

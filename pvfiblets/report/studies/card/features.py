@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,10 +20,11 @@ from ..features.study import subjects
 from .findings import EMPTY
 from .scenes import SIZE, Judged, Scene
 
-__all__ = ["features_part"]
+if TYPE_CHECKING:
+    import moderngl
 
 
-def features_part(ctx: Any) -> Iterator[tuple[str, Callable[[], Scene]]]:
+def features_part(ctx: moderngl.Context) -> Iterator[tuple[str, Callable[[], Scene]]]:
     """Yield every feature of every drawable."""
     for make in subjects(Options(quick=True)):
         subject = make()
@@ -33,7 +34,7 @@ def features_part(ctx: Any) -> Iterator[tuple[str, Callable[[], Scene]]]:
                 yield name, partial(_scene, ctx, subject, feature)
 
 
-def _scene(ctx: Any, subject: Any, feature: Any) -> Scene:
+def _scene(ctx: moderngl.Context, subject: Any, feature: Any) -> Scene:
     path = subject.path(2, SIZE)
     drawn = Drawn(ctx, subject, feature, path)
 

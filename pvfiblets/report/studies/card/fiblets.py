@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache, partial
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +17,10 @@ from .findings import EMPTY
 from .lines import LineSamples, Shown, shown
 from .scenes import SIZE, SMALL, Judged, Scene, share
 
-__all__ = ["fiblets_part"]
+if TYPE_CHECKING:
+    import moderngl
+
+    from pvfiblets.codec.fibletset import FibletSet
 
 STREAMLINES, STEP = 400, 1.0  # of the synthetic brain, mm
 DEGREES = 3.0  # from picture to picture
@@ -36,7 +39,7 @@ Array = npt.NDArray[np.float64]
 class Brain(NamedTuple):
     """The drawn fiblets, and their points as decoded on the CPU."""
 
-    fiblets: Any
+    fiblets: FibletSet
     lines: list[Array]
     arc_length: list[Array]
     height: list[Array]
@@ -59,7 +62,7 @@ def brain() -> Brain:
     return Brain(fiblets, lines, arcs, stored, [line[:, 2] for line in lines])
 
 
-def fiblets_part(ctx: Any, pipeline: str) -> Iterator[tuple[str, Callable[[], Scene]]]:
+def fiblets_part(ctx: moderngl.Context, pipeline: str) -> Iterator[tuple[str, Callable[[], Scene]]]:
     """Yield every feature of a pipeline."""
     scene = partial(_lines, ctx, pipeline)
     for culling in ("none", "two-phase", "coverage"):
@@ -80,7 +83,7 @@ def fiblets_part(ctx: Any, pipeline: str) -> Iterator[tuple[str, Callable[[], Sc
     yield "streamlines in a sphere", partial(_query, ctx, pipeline)
 
 
-def _renderer(ctx: Any, pipeline: str, culling: str = "two-phase") -> Any:
+def _renderer(ctx: moderngl.Context, pipeline: str, culling: str = "two-phase") -> Any:
     from pvfiblets.engine.fiblets.renderer import FibletRenderer
 
     return FibletRenderer(ctx, brain().fiblets, pipeline=pipeline, culling=None if culling == "none" else culling)
@@ -113,7 +116,8 @@ def _height_volume() -> Any:
 
 
 def _lines(
-    ctx: Any, pipeline: str, *, culling: str = "two-phase", kind: str = "far", style: dict[str, Any] | None = None,
+    ctx: moderngl.Context, pipeline: str, *, culling: str = "two-phase", kind: str = "far",
+    style: dict[str, Any] | None = None,
     view: dict[str, Any] | None = None, width: float = 1.0, values: str | None = None, half: bool = False,
     volume: bool = False, region: bool = False, keep: Callable[[Array], Any] | None = None,
     limits: dict[str, float] | None = None,
@@ -141,12 +145,12 @@ def _lines(
                                  path[PICTURES - 1].model_view_projection, SIZE, keep)  # fmt: skip
         samples = replace(samples, streamline=numbers[samples.streamline])
         picture = shown(last)
-        return judged(picture, samples.wrong(picture, width, values=values is not None), limits or {}, values)
+        return _judged(picture, samples.wrong(picture, width, values=values is not None), limits or {}, values)
 
     return Scene(draw, judge, renderer.release)
 
 
-def judged(picture: Shown, wrong: dict[str, Any], limits: dict[str, float], values: str | None) -> Judged:
+def _judged(picture: Shown, wrong: dict[str, Any], limits: dict[str, float], values: str | None) -> Judged:
     """Return shares of wrong pixels, and what to look at."""
     names = ["line", "lost", "direction", *(["value"] if values else [])]
     figures = {EMPTY: float(not picture.there.any()), **{name: share(wrong[name], picture.there) for name in names}}
@@ -156,7 +160,7 @@ def judged(picture: Shown, wrong: dict[str, Any], limits: dict[str, float], valu
     return Judged(figures, {EMPTY: 0.0, **dict.fromkeys(names, WRONG), "direction": BENT, **limits}, pictures)
 
 
-def _tubes(ctx: Any, pipeline: str) -> Scene:
+def _tubes(ctx: moderngl.Context, pipeline: str) -> Scene:
     """Few lines as tubes; a ray meets the capsules of their segments."""
     from pvfiblets.codec.restrict import restrict
     from pvfiblets.engine.fiblets.renderer import FibletRenderer
@@ -180,7 +184,7 @@ def _tubes(ctx: Any, pipeline: str) -> Scene:
     return Scene(draw, lambda last: judge_depths(last, tubes, path[PICTURES - 1]), renderer.release)
 
 
-def _counted(ctx: Any, pipeline: str) -> Scene:
+def _counted(ctx: moderngl.Context, pipeline: str) -> Scene:
     from pvfiblets.engine.fiblets.style import FibletStyle
 
     from .counts import counted
@@ -209,7 +213,7 @@ def _grey(numbers: Array) -> npt.NDArray[np.uint8]:
     return np.repeat(scaled.astype(np.uint8)[..., None], 3, axis=2)
 
 
-def _layers(ctx: Any, pipeline: str) -> Scene:
+def _layers(ctx: moderngl.Context, pipeline: str) -> Scene:
     """Each layer shows existing lines, behind the layer before."""
     from pvfiblets.engine.fiblets.style import FibletStyle
     from pvfiblets.engine.gbuffer import EMPTY as NO_KEY
@@ -241,7 +245,7 @@ def _layers(ctx: Any, pipeline: str) -> Scene:
     return Scene(draw, judge, renderer.release)
 
 
-def _query(ctx: Any, pipeline: str) -> Scene:
+def _query(ctx: moderngl.Context, pipeline: str) -> Scene:
     """Compare streamlines that pass a sphere, or end in it, with the CPU's."""
     from pvfiblets import regions
     from pvfiblets.query.selection.passing import region_flags

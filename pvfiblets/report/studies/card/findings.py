@@ -7,10 +7,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-__all__ = [
-    "BAD", "DIFFERS", "DRAWN", "EMPTY", "FAILS", "MISSING", "SLOW", "WORKS", "Finding", "table", "totals", "verdict_of",
-]  # fmt: skip
-
 EMPTY = "empty"
 """The figure that is 1 where a picture shows nothing at all."""
 WORKS, DRAWN, DIFFERS, SLOW, MISSING, FAILS = "works", "drawn", "differs", "too slow", "missing", "fails"
@@ -48,7 +44,7 @@ class Finding:
         names = [name for name in self.limits if name != EMPTY or self.figures[name]]
         worst = sorted(names, key=lambda name: -self.figures[name] / max(self.limits[name], 1e-300))
         above = [name for name in worst if not self.figures[name] <= self.limits[name]]
-        told = [_told(name, self.figures[name], self.limits[name]) for name in above or worst[:1]]
+        told = [_with_limit(name, self.figures[name], self.limits[name]) for name in above or worst[:1]]
         return "; ".join([self.note] * bool(self.note) + told)
 
 
@@ -82,7 +78,7 @@ def totals(findings: Iterable[Finding]) -> str:
     return ", ".join(parts) or "nothing works"
 
 
-def _told(name: str, value: float, limit: float) -> str:
+def _with_limit(name: str, value: float, limit: float) -> str:
     """Return an error and its limit: in the unit that its name ends with, else as a share."""
     name, _, unit = name.partition(", ")
     if not unit:

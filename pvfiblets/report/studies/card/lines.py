@@ -20,8 +20,6 @@ from pvfiblets.engine.gbuffer import EMPTY
 
 from ..culling.pictures import directions
 
-__all__ = ["LineSamples", "Shown", "shown"]
-
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache, partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +17,8 @@ from ..tubes.pictures import Truth, helices, reversed_depth_of
 from .findings import EMPTY
 from .scenes import SIZE, SMALL, Judged, Scene
 
-__all__ = ["capsules_of", "halos_part", "judge_depths", "tubes_part", "volumes_part"]
+if TYPE_CHECKING:
+    import moderngl
 
 TURNS = 90  # pictures of a whole turn
 PICTURES = 4
@@ -61,7 +62,7 @@ def judge_depths(gbuffer: Any, tubes: Any, camera: Camera) -> Judged:
     return Judged(figures, {EMPTY: 0.0, "silhouette, pixels": SILHOUETTE, "depth, radii": DEPTH}, pictures)
 
 
-def tubes_part(ctx: Any) -> Made:
+def tubes_part(ctx: moderngl.Context) -> Made:
     """Yield every solver and every silhouette of spline tubes."""
     from pvfiblets.engine.tubes.options import SILHOUETTES, SOLVERS
 
@@ -83,7 +84,7 @@ def _truth(tubes: Any, camera: Camera) -> Truth:
     return Truth.from_tubes(tubes, Lens.from_camera(camera))  # the same for all solvers
 
 
-def _tubes(ctx: Any, **options: Any) -> Scene:
+def _tubes(ctx: moderngl.Context, **options: Any) -> Scene:
     from pvfiblets.engine.tubes import TubeRenderer, TubeStyle
 
     tubes, path = _helices()
@@ -99,7 +100,7 @@ def _tubes(ctx: Any, **options: Any) -> Scene:
 # --------------------------------------------------------------------------------------------------------------- halos
 
 
-def halos_part(ctx: Any) -> Made:
+def halos_part(ctx: moderngl.Context) -> Made:
     """Yield looks of lines and points with halos."""
     yield "lines", partial(_halos, ctx)
     yield "tapered ends", partial(_halos, ctx, n_tapered=3)
@@ -107,7 +108,7 @@ def halos_part(ctx: Any) -> Made:
     yield "points", partial(_halos, ctx, points=True)
 
 
-def _halos(ctx: Any, points: bool = False, **more: Any) -> Scene:
+def _halos(ctx: moderngl.Context, points: bool = False, **more: Any) -> Scene:
     from pvfiblets.engine.halos import HaloRenderer
     from pvfiblets.halos import HaloPoints
     from pvfiblets.report.studies.halos.reference import picture
@@ -155,7 +156,7 @@ def _waves() -> Any:
     return RaycastVolume(values.astype(np.float32))
 
 
-def volumes_part(ctx: Any) -> Made:
+def volumes_part(ctx: moderngl.Context) -> Made:
     """Yield modes and filters of ray-cast volumes."""
     from pvfiblets.volumes import FILTERS
 
@@ -168,7 +169,7 @@ def volumes_part(ctx: Any) -> Made:
     yield "mip, no octree", partial(_volume, ctx, "mip", octree=False)
 
 
-def _volume(ctx: Any, mode: str, filter: str = "trilinear", **more: Any) -> Scene:  # noqa: A002
+def _volume(ctx: moderngl.Context, mode: str, filter: str = "trilinear", **more: Any) -> Scene:  # noqa: A002
     from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
 
     from ..volumes.pictures import colours_of

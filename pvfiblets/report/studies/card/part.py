@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,7 +21,8 @@ from ...process import Row, serve
 from .findings import FAILS, MISSING, SLOW, Finding
 from .scenes import Scene, tried
 
-__all__ = ["PARTS", "SPEED", "Trial", "parts_of"]
+if TYPE_CHECKING:
+    import moderngl
 
 LACKING = re.compile(r"needs OpenGL|, which this OpenGL|has no function|no (GPU )?memory")
 SPEED = "speed"
@@ -37,7 +38,7 @@ PARTS = {"spline tubes": "others:tubes_part", "halos": "others:halos_part", "vol
 """Parts that do not depend on the pipeline: modules and functions."""
 
 
-def _scenes(ctx: Any, part: str, folder: Path) -> Iterator[tuple[str, Callable[[], Scene]]]:
+def _scenes(ctx: moderngl.Context, part: str, folder: Path) -> Iterator[tuple[str, Callable[[], Scene]]]:
     kind, _, pipeline = part.rpartition(" ")
     if part in PARTS:
         module, function = PARTS[part].split(":")

@@ -19,8 +19,6 @@ from ...machine import about
 from .check import CardCheck
 from .findings import table, totals
 
-__all__ = ["png", "summary", "write"]
-
 
 def summary(check: CardCheck) -> str:
     """Return the readable summary: the driver, the table, and the verdict."""

@@ -5,14 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from .findings import DIFFERS, Finding, verdict_of
 
-__all__ = ["SIZE", "SMALL", "Judged", "Scene", "share", "tried"]
+if TYPE_CHECKING:
+    import moderngl
 
 SIZE, SMALL = (320, 240), (160, 120)  # the latter where a reference takes its time
 TIMED = 3  # pictures
@@ -44,7 +45,9 @@ class Scene:
     release: Callable[[], object] = lambda: None
 
 
-def tried(ctx: Any, part: str, feature: str, make: Callable[[], Scene]) -> tuple[Finding, Mapping[str, Any]]:
+def tried(
+    ctx: moderngl.Context, part: str, feature: str, make: Callable[[], Scene]
+) -> tuple[Finding, Mapping[str, Any]]:
     """Draw a scene some times, judge the last picture, and give all back.
 
     What OpenGL complains of makes it differ, whatever the picture looks like.

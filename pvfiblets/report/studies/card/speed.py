@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from ..culling.pictures import views
 from .findings import EMPTY
 from .scenes import TIMED, Judged, Scene
 
-__all__ = ["SEGMENTS", "SLUGGISH", "STEP", "TOO_SLOW", "make_brains", "named", "speed_part"]
+if TYPE_CHECKING:
+    import moderngl
 
 SEGMENTS = (1e6, 1e7, 1e8)
 STEP = 0.1  # mm; Schertzer et al. 2022, section 4
@@ -42,7 +43,7 @@ def make_brains(segments: tuple[float, ...], folder: Path) -> dict[float, Path]:
     return made
 
 
-def speed_part(ctx: Any, pipeline: str, folder: Path) -> Iterator[tuple[str, Callable[[], Scene]]]:
+def speed_part(ctx: moderngl.Context, pipeline: str, folder: Path) -> Iterator[tuple[str, Callable[[], Scene]]]:
     """Yield the brains in a folder, the smallest first; larger ones are left out where one is far too slow."""
     for path in sorted(folder.glob("*.fiblets"), key=lambda path: float(path.stem)):
         taken: list[float] = []
@@ -51,7 +52,7 @@ def speed_part(ctx: Any, pipeline: str, folder: Path) -> Iterator[tuple[str, Cal
             return
 
 
-def _scene(ctx: Any, pipeline: str, path: Path, taken: list[float]) -> Scene:
+def _scene(ctx: moderngl.Context, pipeline: str, path: Path, taken: list[float]) -> Scene:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.fiblets.renderer import FibletRenderer
 

@@ -31,8 +31,6 @@ from .check import MODULE, findings_of
 from .findings import MISSING, Finding
 from .part import SPEED, parts_of
 
-__all__ = ["STUDY", "CardStudy", "plan"]
-
 SEGMENTS, QUICK_SEGMENTS = (60e6, 434e6, 1e9, 5.4e9), (5e4, 1e6)
 CHANGED, QUICK_CHANGED = (434e6, 5.4e9), (1e6,)  # of which every step is measured beside its alternatives
 STRIPS, QUICK_STRIPS = (8e6, 81e6, 202e6), (5e4,)
@@ -113,7 +111,7 @@ class CardStudy:
             parts = [part for part in parts_of([info.name for info in known if info.available]) if SPEED not in part]
             first = [part for part in CHECKED_FIRST if part in parts]
             yield from _checked(options.share(CHECK_SHARE), first, folder)
-            process = CellProcess.of("pvfiblets.report.studies.speed.cells")
+            process = CellProcess.for_module("pvfiblets.report.studies.speed.cells")
             stack.callback(process.close)
             others = _checked(options, [part for part in parts if part not in first], folder)
             usual: dict[str, str] = {}
@@ -130,7 +128,7 @@ class CardStudy:
                 own = replace(options, budget=Budget(min(options.budget.left, CELL_SECONDS)))
                 done = measured({**cell, "folder": folder}, process, set(), own)
                 if done is not None:
-                    yield from _told(*done, cell, usual)
+                    yield from _completed(*done, cell, usual)
             yield from others
 
 
@@ -210,7 +208,7 @@ def _case(one: Finding, options: Options) -> Iterator[CaseResult]:
     )  # fmt: skip
 
 
-def _told(record: Record, row: Row, cell: Row, usual: dict[str, str]) -> Iterator[Record | CaseResult]:
+def _completed(record: Record, row: Row, cell: Row, usual: dict[str, str]) -> Iterator[Record | CaseResult]:
     """Yield a cell's record, with all that was read of the card, and whether its frame is that of the default."""
     record.group = ""
     if MESH_EXT in record.setting and "MESH_EXT" not in row["features"]:

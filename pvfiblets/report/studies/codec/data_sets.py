@@ -15,8 +15,6 @@ from pvfiblets.streamlines import Streamlines
 
 from ...study import Options
 
-__all__ = ["DataSet", "data_sets", "file_sets", "files_of", "thinned"]
-
 STEPS = (0.05, 0.1, 0.2, 0.5, 1.0)  # mm
 QUICK_STEPS = (0.1, 0.5)
 # Degrees per axis and step of a probabilistic tracker's turns. About 4 at 0.2 mm resemble iFOD1; as an angle a step

@@ -7,8 +7,6 @@ import numpy.typing as npt
 
 from ...record import Figure
 
-__all__ = ["direction_angles", "direction_figures", "distances", "error_figures", "median_step"]
-
 ONE_POINT = 1e-3  # pixels
 LEAST_SUM = 1e-3  # of two unit vectors; a shorter one has no direction
 PIXELS = 2000.0  # of a full-screen view, along the diagonal of the bounds

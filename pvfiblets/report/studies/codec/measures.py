@@ -24,8 +24,6 @@ from .tractograms import trackings, whole_files
 if TYPE_CHECKING:
     from pvfiblets.query.measures.table import Table
 
-__all__ = ["STUDY", "MeasuresStudy"]
-
 VOXEL, PARCEL = 1.0, 16.0  # mm, sides of voxels of maps and of parcels of matrices
 OTHERS = (0.25, 4.0)  # times the default's error bound
 

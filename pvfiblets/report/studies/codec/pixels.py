@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,8 @@ from .baselines.directions import PaperFiblets, QFib
 from .data_sets import DataSet, file_sets
 from .errors import median_step
 
-__all__ = ["STUDY", "PixelsStudy", "beyond", "lines_of"]
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
 
 SIZE, QUICK_SIZE = (960, 720), (240, 180)
 STREAMLINES, QUICK_STREAMLINES = 300, 40  # a few, as in the paper: in a dense set, pixels show the nearest of many
@@ -138,7 +139,7 @@ def _by_vtk(pv: Any, plotter: Any, points: npt.ArrayLike, offsets: npt.NDArray[n
     plotter.add_mesh(lines_of(pv, points, offsets), color="white", lighting=False, line_width=1, name="lines")
 
 
-def _drawn(plotter: Any, fiblets: Any) -> None:
+def _drawn(plotter: Any, fiblets: FibletSet) -> None:
     plotter.add_fiblets(fiblets, color="white", lighting=False, show_scalar_bar=False, name="lines")
 
 

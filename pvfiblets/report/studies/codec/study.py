@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +21,8 @@ from .baselines.numbers import float16, int16, squeezed_by_zlib, squeezed_by_zst
 from .data_sets import SMALL, DataSet, data_sets
 from .errors import direction_figures, distances, error_figures, median_step
 
-__all__ = ["STUDY", "CodecStudy", "Variant", "variants"]
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
 
 BOUNDS = (0.02, 0.05, 0.1, 0.2, 0.5)  # steps
 QUICK_BOUNDS = (0.05, 0.1, 0.2)
@@ -49,7 +50,7 @@ class Variant:
 class _Fiblets:
     """A set of fiblets as the baselines are."""
 
-    fiblets: Any
+    fiblets: FibletSet
     nbytes: int
 
     def points(self) -> Points:

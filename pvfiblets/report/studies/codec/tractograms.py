@@ -17,8 +17,6 @@ from .data_sets import LENGTH, QUICK_STEPS, SMALL, STEPS, DataSet, files_of
 from .errors import median_step
 from .study import DEFAULT, Variant, measured, one_thread, variants
 
-__all__ = ["METHODS", "STUDY", "TractogramsStudy", "trackings", "whole_files"]
-
 METHODS = ("fiblets", "QFib", "paper's fiblets")
 BITS = "8 bits"  # of QFib, as in the paper
 POINTS, QUICK_POINTS = 1_000_000, 20_000  # of a made-up set
@@ -94,7 +92,7 @@ def whole_files(options: Options) -> Iterator[DataSet]:
         try:
             found = formats.read(path)
         except (ValueError, OSError) as error:
-            options.leave_out(path.name, _told(error, path))
+            options.leave_out(path.name, _one_line(error, path))
             continue
         if found.n_points < SMALL or not np.isfinite(found.points).all():
             options.leave_out(path.name, f"it has fewer than {SMALL:,} points, or some that are not finite")
@@ -102,7 +100,7 @@ def whole_files(options: Options) -> Iterator[DataSet]:
         yield DataSet(path.name, "files", Streamlines(found.points, found.offsets))
 
 
-def _told(error: Exception, path: Path) -> str:
+def _one_line(error: Exception, path: Path) -> str:
     return " ".join(str(error).replace(str(path), path.name).split())
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-__all__ = ["Flight"]
+if TYPE_CHECKING:
+    import moderngl
 
 Read = TypeVar("Read")
 
@@ -16,7 +17,7 @@ class Flight:
     ``renderer.render(view, style)`` draws, and returns the picture to read; the first view is where the camera starts.
     """
 
-    def __init__(self, ctx: Any, renderer: Any, path: Sequence[Any], style: Any) -> None:
+    def __init__(self, ctx: moderngl.Context, renderer: Any, path: Sequence[Any], style: Any) -> None:
         self._ctx, self._renderer, self._style = ctx, renderer, style
         self._path = list(path)
 

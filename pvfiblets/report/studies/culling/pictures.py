@@ -16,19 +16,6 @@ from pvfiblets.engine.gbuffer import EMPTY
 from ...cameras import ELEVATION, VERTICAL_ANGLE, Camera
 from ...record import Figure
 
-__all__ = [
-    "DISTANCES",
-    "Visible",
-    "averaged",
-    "colours",
-    "difference",
-    "directions",
-    "errors",
-    "streamlines_of",
-    "views",
-    "visible",
-]
-
 DISTANCES = {"far": 1.0, "close": 1.0 / 3.0, "inside": 0.06}
 """Distances of the eye from the middle, by the distance from which the whole set fits the picture."""
 

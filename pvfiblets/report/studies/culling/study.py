@@ -22,10 +22,10 @@ from .flights import Flight
 from .pictures import Singles, Visible, averaged, colours, difference, errors, views, visible
 
 if TYPE_CHECKING:
+    import moderngl
+
     from pvfiblets.codec.fibletset import FibletSet
 
-
-__all__ = ["STUDY", "CullingStudy", "Scene", "Variant", "variants"]
 
 SEGMENTS = 12_000_000  # of the synthetic brain
 QUICK_SEGMENTS = 500_000
@@ -97,7 +97,7 @@ class Scene:
 class _Basis:
     """Reference pictures, each drawn once: right ones, and means of several samples a pixel."""
 
-    def __init__(self, ctx: Any, scene: Scene) -> None:
+    def __init__(self, ctx: moderngl.Context, scene: Scene) -> None:
         self._ctx, self._scene = ctx, scene
         self._plain: dict[float, list[Visible]] = {}
         self.coloured = [colours(picture) for picture in self.plain(0.0)]
@@ -167,7 +167,7 @@ class CullingStudy:
             for scene in scenes(options):
                 yield from self._measured(ctx, scene, options)
 
-    def _measured(self, ctx: Any, scene: Scene, options: Options) -> Iterator[Record]:
+    def _measured(self, ctx: moderngl.Context, scene: Scene, options: Options) -> Iterator[Record]:
         compared = Comparison(scene.name, options, turns_of(ctx), len(scene.path) - 1)
         with ExitStack() as stack:
             basis: _Basis | None = None
@@ -188,7 +188,7 @@ def scenes(options: Options) -> Iterator[Scene]:
     """Make or read one set after the other, and fly around each."""
     size = QUICK_SIZE if options.quick else SIZE
     frames = QUICK_FRAMES if options.quick else FRAMES
-    brain = synthetic_brain(options)
+    brain = _synthetic_brain(options)
     for kind, degrees in QUICK_FLIGHTS if options.quick else FLIGHTS:
         turn = "still" if degrees == STILL else f"{degrees:g}° a frame"
         path = views(brain.bounds, kind, degrees, frames + 1, size)
@@ -210,7 +210,7 @@ def scenes(options: Options) -> Iterator[Scene]:
         yield Scene(data.name, data.group, fiblets, path)
 
 
-def synthetic_brain(options: Options) -> FibletSet:
+def _synthetic_brain(options: Options) -> FibletSet:
     """Make a brain of streamlines."""
     from pvfiblets.synthetic import brain
 
@@ -219,7 +219,7 @@ def synthetic_brain(options: Options) -> FibletSet:
 
 
 def measured(
-    ctx: Any, scene: Scene, variant: Variant, basis: _Basis, stack: ExitStack
+    ctx: moderngl.Context, scene: Scene, variant: Variant, basis: _Basis, stack: ExitStack
 ) -> tuple[Record, Flight]:
     """Draw by one variant; return a record of errors, and the flight that is to be timed."""
     fiblets = scene.fiblets

@@ -26,8 +26,6 @@ import numpy.typing as npt
 from pvfiblets.codec.direction_codebook import cap_ratios, packed_scales, quaternions
 from pvfiblets.codec.jit import kernel
 
-__all__ = ["CLOSED", "MATRIX", "POINTS", "PREFIX", "QUATERNION", "ROUNDED", "SEQUENTIAL", "TABLE", "decode", "inputs"]
-
 POINTS = 60
 ELEMENTS = 64
 PASSES = 6

@@ -10,15 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.codec.direction_codebook import CAP_DEGREES, quaternions
-from pvfiblets.codec.reference import first_frame
 
 from ...record import Axes, Figure, Record
 from ...study import Options
 from ...timing import Comparison, Turns
 from ..codec.errors import error_figures
 from . import decoders
-
-__all__ = ["STUDY", "DecodeStudy", "Made", "exact", "made"]
+from .reference import first_frame
 
 STEPS = (0.05, 0.1, 0.2, 0.5, 1.0)  # mm
 QUICK_STEPS = (0.1, 1.0)
@@ -60,7 +58,7 @@ def made(n: int, cap: int, step: float, seed: int) -> Made:
 
 def exact(fiblets: Made) -> npt.NDArray[np.longdouble]:
     """Decode in NumPy's longest number (64 bits of mantissa on x86): what the codes mean, ``(n, 60, 3)``."""
-    # The meaning is that of `pvfiblets.codec.reference`: products of the table's quaternions as they are stored.
+    # The meaning is that of `reference`: products of the table's quaternions as they are stored.
     long = np.longdouble
     table = quaternions()[fiblets.cap].astype(long)
     q = fiblets.frames.astype(long)
@@ -126,7 +124,7 @@ class DecodeStudy:
             truth = exact(fiblets)
             often = replace(options, repeats=REPEATS * options.repeats)
             compared = Comparison(name, often, Turns(), n * decoders.POINTS, "point")
-            for combination in combinations():
+            for combination in _combinations():
                 if compared.allows(", ".join(combination)):
                     record, decode = measured(fiblets, truth, combination)
                     record.data, record.group = name, group
@@ -134,7 +132,7 @@ class DecodeStudy:
             yield from compared.finish()
 
 
-def combinations() -> list[tuple[str, str, str, str]]:
+def _combinations() -> list[tuple[str, str, str, str]]:
     """Return order, number format, algebra and source of all variants, the codec's own first."""
     every = [(o, n, a, s) for s in SOURCES for a in ALGEBRAS for o in ORDERS for n in NUMBERS]
     return sorted(every, key=lambda variant: variant[2:] != ("quaternions", "table"))

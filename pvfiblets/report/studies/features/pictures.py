@@ -14,9 +14,9 @@ from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.engine.gbuffer import EMPTY
 
 if TYPE_CHECKING:
-    from ...cameras import Camera
+    import moderngl
 
-__all__ = ["PICTURE_EFFECTS", "PictureEffect", "WholePicture", "lens_of"]
+    from ...cameras import Camera
 
 APERTURE, MAX_BLUR = 0.06, 16.0
 """Of the height that is seen at the distance in focus, and pixels: the defaults of ``plotter.picture``."""
@@ -55,7 +55,7 @@ class WholePicture:
     effect alone.
     """
 
-    def __init__(self, ctx: Any, effect: PictureEffect) -> None:
+    def __init__(self, ctx: moderngl.Context, effect: PictureEffect) -> None:
         self._ctx, self._effect = ctx, effect
         self._effects = PictureEffects(ctx)
         self._taken: dict[Camera, list[Any]] = {}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,7 +13,8 @@ from pvfiblets.engine.view import Style, View
 
 from ...cameras import Camera, orbit
 
-__all__ = ["PLAIN", "Drawn", "Feature", "Subject"]
+if TYPE_CHECKING:
+    import moderngl
 
 PLAIN = "plain"
 TURNS = 315  # pictures of a whole turn: 1.14 degrees a frame, as in Schertzer et al. 2022, section 4.5
@@ -58,7 +59,7 @@ class Subject:
 class Drawn:
     """A subject with one feature, drawn from camera after camera, and back; ``last`` is the last G-buffer."""
 
-    def __init__(self, ctx: Any, subject: Subject, feature: Feature, path: Sequence[Camera]) -> None:
+    def __init__(self, ctx: moderngl.Context, subject: Subject, feature: Feature, path: Sequence[Camera]) -> None:
         self._ctx, self._feature, self._path = ctx, feature, list(path)
         self.style = replace(subject.style, **feature.style)
         self.renderer = subject.make(ctx, **feature.options)

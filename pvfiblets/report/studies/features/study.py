@@ -20,11 +20,11 @@ from .subjects import brain_subject, halo_subject, tube_subject, volume_subject
 from .window import in_window
 
 if TYPE_CHECKING:
+    import moderngl
+
     from pvfiblets.codec.fibletset import FibletSet
 
     from ...record import Timing
-
-__all__ = ["STUDY", "FeatureStudy", "subjects"]
 
 SEGMENTS, QUICK_SEGMENTS = 2_000_000, 150_000  # of a synthetic brain
 STEP = 0.5  # mm
@@ -73,7 +73,7 @@ class FeatureStudy:
             options.leave_out("streamlines in a window", f"{error.name} is not installed")
 
 
-def _measured(ctx: Any, subject: Subject, options: Options) -> Iterator[Record]:
+def _measured(ctx: moderngl.Context, subject: Subject, options: Options) -> Iterator[Record]:
     size, frames = (QUICK_SIZE, QUICK_FRAMES) if options.quick else (SIZE, FRAMES)
     path = subject.path(frames + 1, size)
     compared, shown = Comparison(subject.name, options, turns_of(ctx), frames), []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,10 @@ from ...cameras import Camera
 from .pictures import PICTURE_EFFECTS, PictureEffect, WholePicture, lens_of
 from .scenes import PLAIN, Drawn, Feature, Subject
 
-__all__ = ["brain_subject", "halo_subject", "torus", "tube_subject", "volume_subject"]
+if TYPE_CHECKING:
+    import moderngl
+
+    from pvfiblets.codec.fibletset import FibletSet
 
 LAYERS = 4
 WIDTH, RADIUS = 3.0, 0.5  # pixels of wide lines, mm of tubes
@@ -74,7 +77,7 @@ def _summed(mode: str, *, sliced: bool) -> Callable[..., None]:
     return effect
 
 
-def brain_subject(fiblets: Any) -> Subject:
+def brain_subject(fiblets: FibletSet) -> Subject:
     """Return streamlines with what can be done to them; ``fiblets`` hold a per-point array ``'height'``."""
     from pvfiblets import regions
     from pvfiblets.engine.fiblets.renderer import FibletRenderer
@@ -110,7 +113,7 @@ def brain_subject(fiblets: Any) -> Subject:
         Feature("values", "curvature", style={"values": "curvature"}),
         Feature("values", "a volume", style={"values": volume}),
         Feature("cut", "plane", view={"clip_planes": plane}),
-        Feature("cut", "box", view=by_planes(regions.Box(inner))),
+        Feature("cut", "box", view=_by_planes(regions.Box(inner))),
         Feature("cut", "outside a box", view={"region": ~regions.Box(inner)}),
         Feature("cut", "sphere", view={"region": regions.Sphere(middle, 0.3 * float(sides.min()))}),
         Feature("cut", "mesh", view={"region": torus(middle, 0.35 * float(sides.min()))}),
@@ -126,13 +129,13 @@ def brain_subject(fiblets: Any) -> Subject:
         Feature("pipeline", "tessellation", options={"pipeline": "tessellation"}),
     ]
 
-    def make(ctx: Any, **options: Any) -> Any:
+    def make(ctx: moderngl.Context, **options: Any) -> Any:
         return FibletRenderer(ctx, fiblets, **options)
 
     return Subject("streamlines", make, FibletStyle(), fiblets.bounds, features)
 
 
-def by_planes(region: Any) -> dict[str, Any]:
+def _by_planes(region: Any) -> dict[str, Any]:
     """Return the fields of a view that is cut as an actor is: by planes, as far as the region is made of them."""
     from pvfiblets.engine.regions.clip_planes import planes_of
 
@@ -169,7 +172,7 @@ def tube_subject(tubes: Any) -> Subject:
         Feature("solver", "newton", options={"solver": "newton"}),
     ]
 
-    def make(ctx: Any, **options: Any) -> Any:
+    def make(ctx: moderngl.Context, **options: Any) -> Any:
         return TubeRenderer(ctx, tubes, **options)
 
     return Subject("spline tubes", make, TubeStyle(), tubes.bounds, features)
@@ -199,7 +202,7 @@ def halo_subject(lines: Any) -> Subject:
         Feature("culling", "none", options={"culling": None}),
     ]
 
-    def make(ctx: Any, **options: Any) -> Any:
+    def make(ctx: moderngl.Context, **options: Any) -> Any:
         return HaloRenderer(ctx, lines, **options)
 
     return Subject("lines with halos", make, HaloDrawStyle(look=look), lines.bounds, features)
@@ -233,11 +236,11 @@ def volume_subject(volume: Any) -> Subject:
         Feature("rays", "jitter", style=casting(jitter=True)),
         Feature("rays", "every fourth first", style=casting(sparse=4)),
         Feature("rays", "no octree", style=casting(octree=False)),
-        Feature("cut", "box", view=by_planes(regions.Box(inner))),
+        Feature("cut", "box", view=_by_planes(regions.Box(inner))),
         Feature("cut", "outside a box", view={"region": ~regions.Box(inner)}),
     ]
 
-    def make(ctx: Any, **options: Any) -> Any:
+    def make(ctx: moderngl.Context, **options: Any) -> Any:
         return VolumeRenderer(ctx, volume, **options)
 
     return Subject("volume", make, VolumeStyle(casting=mip), volume.bounds, features)

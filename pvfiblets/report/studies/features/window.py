@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,7 +17,8 @@ from ...window import Window
 from .scenes import PLAIN
 from .subjects import torus
 
-__all__ = ["WindowFeature", "in_window", "window_features"]
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
 
 DEGREES = 1.14  # from frame to frame: Schertzer et al. 2022, section 4.5
 GROUP = "window"
@@ -36,7 +37,7 @@ class WindowFeature:
     varies: bool = True  # Whether the n-th time differs from the one before
 
 
-def window_features(fiblets: Any) -> list[WindowFeature]:
+def window_features(fiblets: FibletSet) -> list[WindowFeature]:
     """Return what can be set on an actor of these fiblets."""
     from pvfiblets import regions
 
@@ -109,10 +110,10 @@ def window_features(fiblets: Any) -> list[WindowFeature]:
     return found
 
 
-class FibletWindow(Window):
+class _FibletWindow(Window):
     """A window with fiblets that turns."""
 
-    def __init__(self, fiblets: Any, size: tuple[int, int]) -> None:
+    def __init__(self, fiblets: FibletSet, size: tuple[int, int]) -> None:
         super().__init__(size, "white", multisampled=True)
         self.actor: Any = self.plotter.add_fiblets(fiblets)
         self.plotter.view_vector((1.0, 0.8, 0.5), (0.0, 0.0, 1.0))
@@ -138,7 +139,7 @@ def in_window(
     if not options.allows(f"{data}: everything"):
         return
     fiblets = make()
-    window = FibletWindow(fiblets, size)
+    window = _FibletWindow(fiblets, size)
     actor, late, plain_frames, plain_bytes = window.actor, [], [], 0
     try:
         for _ in range(3):

@@ -17,6 +17,8 @@ from ...drawing import data_bytes
 from .pictures import Singles, Viewpoint, averaged, darkness_of, finer
 
 if TYPE_CHECKING:
+    import moderngl
+
     from pvfiblets.codec.fibletset import FibletSet
 
 
@@ -45,7 +47,7 @@ class Strips:
     """Lines or points with strips around them, some samples along a pixel's side."""
 
     def __init__(
-        self, ctx: Any, drawn: HaloLines | HaloPoints, times: int = 1, culling: str | None = "two-phase"
+        self, ctx: moderngl.Context, drawn: HaloLines | HaloPoints, times: int = 1, culling: str | None = "two-phase"
     ) -> None:
         self.renderer = HaloRenderer(ctx, drawn, culling=culling)
         self._times = times
@@ -74,7 +76,7 @@ class FibletHalos:
     A line takes one of the samples along a pixel's side at least, whatever its look says.
     """
 
-    def __init__(self, ctx: Any, fiblets: FibletSet, times: int = 1) -> None:
+    def __init__(self, ctx: moderngl.Context, fiblets: FibletSet, times: int = 1) -> None:
         self._times = times
         self._renderer = FibletRenderer(ctx, fiblets)
         self._halos = HaloPass(ctx)

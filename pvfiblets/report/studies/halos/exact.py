@@ -17,8 +17,6 @@ from ...record import Figure
 from .pictures import Singles
 from .reference import HALO, LINE, NOTHING, Picture
 
-__all__ = ["Crossings", "crossings", "gaps", "kinds", "pixel_errors"]
-
 PIXEL = 0.25  # mm, of the picture of crossings
 LINE_WIDTH, STRIP_WIDTH, DEEPEST = 2.0, 8.0, 8.0  # mm
 DEPTHS = (1.0, 2.3, 3.1, 4.05, 5.2, 6.35, 7.4, 9.0)  # mm from the lines in front to the lines behind

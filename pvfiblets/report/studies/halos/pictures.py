@@ -18,20 +18,6 @@ from pvfiblets.halos.spacing import default_widths
 
 from ...cameras import ELEVATION, VERTICAL_ANGLE, Camera
 
-__all__ = [
-    "MOST_PIXELS",
-    "WIDTH_CUE",
-    "WRONG",
-    "averaged",
-    "darkness_of",
-    "differences",
-    "finer",
-    "helices",
-    "look_of",
-    "orbit",
-    "picture",
-]
-
 DEGREES_PER_FRAME = 1.14  # Schertzer et al. 2022, section 4.5: 90 degrees a second at 80 frames
 MOST_PIXELS = 1 << 24  # of one rendering; larger ones are drawn in tiles
 WIDTH_CUE = 0.5  # the plotter's own

@@ -23,8 +23,6 @@ from pvfiblets.halos.style import HaloStyle
 
 from .camera_reference import Array, Camera, Fragments, Ints, between, box, kept
 
-__all__ = ["mask", "places_along", "rates", "strips"]
-
 SHORT = 1e-6  # pixels: a segment that takes no more of the screen has no direction there
 
 SHARPEST = 0.5  # cosine of the sharpest bend that is divided by its bisector

@@ -26,9 +26,9 @@ from .pictures import Singles, differences, helices, look_of, orbit, picture
 from .windows import beside_plain
 
 if TYPE_CHECKING:
-    from ...cameras import Camera
+    import moderngl
 
-__all__ = ["STUDY", "HaloStudy", "Scene", "Variant", "variants"]
+    from ...cameras import Camera
 
 SETS = ("fibres-subset", "office", "shape-small")  # of the paper's sizes; not in quick runs
 STEP = 0.5  # mm, of the synthetic brain
@@ -65,7 +65,7 @@ class Variant:
         """Return a look as this variant has it."""
         return replace(look, smooth=self.name != HARD)
 
-    def drawing(self, ctx: Any, scene: Scene) -> Drawing:
+    def drawing(self, ctx: moderngl.Context, scene: Scene) -> Drawing:
         """Make what draws."""
         if self.name == FIBLETS:
             from pvfiblets.report.studies.codec.coded import compress
@@ -146,7 +146,7 @@ class HaloStudy:
         return run_parts({_exact: 1.0, _gaps: 1.0, _all_pictures: 6.0}, options, {beside_plain: 2.0})
 
 
-def _all_pictures(ctx: Any, options: Options) -> Iterator[Record]:
+def _all_pictures(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     for scene in scenes(options):
         yield from _pictures(ctx, scene, options)
 
@@ -202,7 +202,7 @@ def _percent(found: dict[str, float]) -> dict[str, Figure]:
     return {names.get(name, name): Figure(100.0 * value, "%") for name, value in found.items()}
 
 
-def _pictures(ctx: Any, scene: Scene, options: Options) -> Iterator[Record]:
+def _pictures(ctx: moderngl.Context, scene: Scene, options: Options) -> Iterator[Record]:
     """Compare pictures with finely sampled ones."""
     compared = Comparison(scene.name, options, turns_of(ctx), len(scene.path) - 1)
     truth: list[Singles] | None = None
@@ -228,7 +228,7 @@ def _pictures(ctx: Any, scene: Scene, options: Options) -> Iterator[Record]:
         yield from compared.finish()
 
 
-def _finely(ctx: Any, scene: Scene, variant: Variant) -> tuple[list[Singles], float, str]:
+def _finely(ctx: moderngl.Context, scene: Scene, variant: Variant) -> tuple[list[Singles], float, str]:
     """Draw with many samples; return pictures, and how many seconds they took together."""
     clock, name = clock_of(ctx)
     strips = Strips(ctx, scene.drawn)
@@ -241,7 +241,7 @@ def _finely(ctx: Any, scene: Scene, variant: Variant) -> tuple[list[Singles], fl
 
 
 def _measured(
-    ctx: Any, scene: Scene, variant: Variant, stack: ExitStack
+    ctx: moderngl.Context, scene: Scene, variant: Variant, stack: ExitStack
 ) -> tuple[list[Singles], Record, dict[str, Flight]]:
     """Draw in one variant; return pictures, a record without errors, and the flight that is to be timed."""
     drawing = variant.drawing(ctx, scene)
@@ -256,7 +256,7 @@ def _measured(
 # ------------------------------------------------------------------------------------------- what pictures should show
 
 
-def _exact(ctx: Any, options: Options) -> Iterator[Record]:
+def _exact(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     """Compare pictures of one sample a pixel with the float64 reference."""
     from .reference import picture as reference
 
@@ -294,7 +294,7 @@ def _exact(ctx: Any, options: Options) -> Iterator[Record]:
     options.log(f"halos: {name}: 2 variants")
 
 
-def _gaps(ctx: Any, options: Options) -> Iterator[Record]:
+def _gaps(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     """Compare the gaps at crossings with the paper's formula."""
     made: Crossings = crossings()
     # The same picture would not be drawn again: the camera moves to and fro by a thousandth of a pixel.

@@ -18,8 +18,6 @@ from ...window import Window
 from ..codec.pixels import lines_of
 from .pictures import helices, look_of, orbit
 
-__all__ = ["HaloWindow", "PlainWindow", "beside_plain"]
-
 SETS = (
     "shape-small", "fibres-subset", "office", "shape-large", "fibres", "water", "terrain", "water-dense",
 )  # fmt: skip

@@ -17,8 +17,6 @@ from ...record import Figure, Record
 from ...study import Options
 from ...timing import timing
 
-__all__ = ["painted"]
-
 RADII, QUICK_RADII = (2.0, 5.0, 10.0), (5.0,)  # mm, of the brush
 STROKES, QUICK_STROKES = 15, 5  # that count: the first does not
 DRAGGED = 30  # mm

@@ -16,8 +16,6 @@ from ...record import Figure, Record
 from ...study import Options
 from ...timing import Comparison, Turns
 
-__all__ = ["equal_arcs", "mdf_distances", "similar"]
-
 LIKE = 100  # streamlines that others are compared with
 REACH = 8.0  # mm
 THRESHOLDS = (20.0, 10.0)  # mm

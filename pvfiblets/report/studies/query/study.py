@@ -10,8 +10,6 @@ from ...study import Options
 from .painted import painted
 from .similar import similar
 
-__all__ = ["STUDY", "QueryStudy"]
-
 STREAMLINES, QUICK_STREAMLINES = (10_000, 100_000, 1_000_000), (2_000,)
 STEP = 0.5  # mm
 

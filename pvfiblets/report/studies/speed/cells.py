@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from hashlib import sha1
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 import numpy as np
@@ -32,7 +32,10 @@ from ...timing import clock_of
 from ..culling.pictures import views
 from .constants import replaced
 
-__all__ = ["CELLS", "measure_cell", "path_of_brain", "stored_brain"]
+if TYPE_CHECKING:
+    import moderngl
+
+    from pvfiblets.codec.fibletset import FibletSet
 
 DEGREES_PER_FRAME = 1.14  # Schertzer et al. 2022, section 4.5: 90 degrees a second at 80 frames
 PER_STREAMLINE = 94.0  # mm, on average, of pvfiblets.synthetic.brain
@@ -74,7 +77,7 @@ class Drawing:
     waits: bool = False  # Whether each frame waits for its end
 
 
-def flown(ctx: Any, drawing: Drawing, seconds: float, warm: float = 0.0) -> Row:
+def _flown(ctx: moderngl.Context, drawing: Drawing, seconds: float, warm: float = 0.0) -> Row:
     """Draw along a path for so many seconds, three frames at least, each waited for."""
     clock, name = clock_of(ctx)
     taken: list[float] = []
@@ -89,7 +92,7 @@ def flown(ctx: Any, drawing: Drawing, seconds: float, warm: float = 0.0) -> Row:
             for one in drawing.explain().get("passes", ()):
                 passes.setdefault(one["name"], []).append(one["ms"])
         elif len(taken) == WARM:
-            steady = warmed(ctx, drawing, warm) if warm else None
+            steady = _warmed(ctx, drawing, warm) if warm else None
             begun = time.perf_counter()
         if len(taken) >= WARM + 3 and time.perf_counter() - begun > seconds:
             break
@@ -97,7 +100,7 @@ def flown(ctx: Any, drawing: Drawing, seconds: float, warm: float = 0.0) -> Row:
     return {"seconds": taken[WARM:], "first": taken[0], "clock": name, "steady": steady, "passes": middle}
 
 
-def warmed(ctx: Any, drawing: Drawing, seconds: float) -> bool:
+def _warmed(ctx: moderngl.Context, drawing: Drawing, seconds: float) -> bool:
     """Draw until five frames take as long as the five before, within 2 %; return whether they came to that."""
     end, last = time.perf_counter() + seconds, 0.0
     while time.perf_counter() < end:
@@ -112,7 +115,7 @@ def warmed(ctx: Any, drawing: Drawing, seconds: float) -> bool:
     return False
 
 
-def in_flight(ctx: Any, drawing: Drawing, frames: int) -> Row:
+def in_flight(ctx: moderngl.Context, drawing: Drawing, frames: int) -> Row:
     """Draw frames without waiting for any, as a window does: seconds a frame, and those of the GPU."""
     queue = TimestampClock(GLExtras(ctx))
     start = time.perf_counter()
@@ -141,13 +144,13 @@ _CLUSTERS: dict[tuple[Any, ...], list[Any]] = {}
 
 
 @contextmanager
-def clusters_kept(cell: Row) -> Iterator[None]:
+def _clusters_kept(cell: Row) -> Iterator[None]:
     """Keep the clusters of a set until another has any: those of billions of segments take half a minute."""
     from pvfiblets.engine.fiblets.data import clusters
 
     made, of = clusters.cluster_words, (cell["segments"], cell["step"])
 
-    def kept(fiblets: Any, first: int, last: int) -> Iterator[Any]:
+    def kept(fiblets: FibletSet, first: int, last: int) -> Iterator[Any]:
         key = (*of, first, last)
         if key not in _CLUSTERS:
             for other in [other for other in _CLUSTERS if other[:2] != of]:
@@ -159,13 +162,13 @@ def clusters_kept(cell: Row) -> Iterator[None]:
         yield
 
 
-def fiblets(ctx: Any, cell: Row) -> Drawing:
+def fiblets(ctx: moderngl.Context, cell: Row) -> Drawing:
     """Fiblets by one pipeline and culling: the paper's table 2, and the last column of its table 3."""
     from pvfiblets.engine import FibletRenderer
 
     brain = stored_brain(cell["segments"], cell["step"], cell["folder"])
     culling = None if cell["culling"] == "none" else cell["culling"]
-    with clusters_kept(cell):
+    with _clusters_kept(cell):
         renderer = FibletRenderer(
             ctx, brain, pipeline=cell["pipeline"], culling=culling, max_buffer_bytes=cell.get("buffer_bytes")
         )
@@ -198,7 +201,7 @@ RESTART = 0xFFFFFFFF
 """Ends a strip; moderngl has restarts by this index on in every context."""
 
 
-def line_strips(ctx: Any, cell: Row) -> Drawing:
+def _line_strips(ctx: moderngl.Context, cell: Row) -> Drawing:
     """Decoded points as line strips, 16 bytes a point with their indices: what a basic OpenGL program draws."""
     import moderngl
 
@@ -215,12 +218,13 @@ def line_strips(ctx: Any, cell: Row) -> Drawing:
     array = ctx.vertex_array(program, [(places, "3f", "place")], index_buffer=indices)
     colour, depth = ctx.texture(size, 4), ctx.depth_renderbuffer(size)
     target = ctx.framebuffer([colour], depth)
+    matrix: Any = program["matrix"]
 
     def draw(view: View) -> None:
         target.use()
         ctx.enable_only(moderngl.DEPTH_TEST)
         target.clear()
-        program["matrix"].write(np.ascontiguousarray(view.model_view_projection.T, np.float32))
+        matrix.write(np.ascontiguousarray(view.model_view_projection.T, np.float32))
         array.render(moderngl.LINE_STRIP)
 
     def release() -> None:
@@ -232,7 +236,7 @@ def line_strips(ctx: Any, cell: Row) -> Drawing:
     return Drawing(draw, path, lambda: size_of_data, release)
 
 
-def feature(ctx: Any, cell: Row) -> Drawing:
+def feature(ctx: moderngl.Context, cell: Row) -> Drawing:
     """One feature of fiblets alone: the paper's section 5 and figures 1, 11 and 12."""
     from ..features.scenes import Drawn
     from ..features.subjects import brain_subject
@@ -244,7 +248,7 @@ def feature(ctx: Any, cell: Row) -> Drawing:
     return Drawing(drawn.render, path, lambda: drawn.nbytes, drawn.release, waits=True)
 
 
-def tubes(ctx: Any, cell: Row) -> Drawing:
+def tubes(ctx: moderngl.Context, cell: Row) -> Drawing:
     """Spline tubes: Russig et al. 2020, figure 5, this program's bars."""
     from pvfiblets.engine.tubes import TubeRenderer, TubeStyle
     from pvfiblets.synthetic.tubes import tube_set
@@ -254,7 +258,7 @@ def tubes(ctx: Any, cell: Row) -> Drawing:
     return _by_cameras(TubeRenderer(ctx, made), TubeStyle(), path, cell)
 
 
-def halos(ctx: Any, cell: Row) -> Drawing:
+def halos(ctx: moderngl.Context, cell: Row) -> Drawing:
     """Lines and points with halos: the sets of Everts et al. 2009, table 1."""
     from pvfiblets.engine.halos import HaloRenderer
     from pvfiblets.synthetic.halos import halo_set
@@ -267,7 +271,7 @@ def halos(ctx: Any, cell: Row) -> Drawing:
     return _by_cameras(HaloRenderer(ctx, drawn), finer(look_of(drawn), 1), path, cell)
 
 
-def volume(ctx: Any, cell: Row) -> Drawing:
+def volume(ctx: moderngl.Context, cell: Row) -> Drawing:
     """A tree of vessels, ray cast in one mode."""
     from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
     from pvfiblets.synthetic.vessels import vessel_tree
@@ -288,7 +292,7 @@ def _by_cameras(renderer: Any, style: Any, path: Sequence[Any], cell: Row) -> Dr
 
 
 CELLS: dict[str, Callable[[Any, Row], Drawing]] = {
-    "fiblets": fiblets, "line strips": line_strips, "feature": feature, "tubes": tubes, "halos": halos,
+    "fiblets": fiblets, "line strips": _line_strips, "feature": feature, "tubes": tubes, "halos": halos,
     "volume": volume,
 }  # fmt: skip
 
@@ -312,10 +316,10 @@ def measure_cell(cell: Row) -> Row:
         ctx.release()
 
 
-def _measured(ctx: Any, drawing: Drawing, cell: Row) -> Row:
+def _measured(ctx: moderngl.Context, drawing: Drawing, cell: Row) -> Row:
     warm = cell.get("warm", 0.0)
     before = card_state() if warm else {}
-    row = flown(ctx, drawing, cell["limit"], warm)
+    row = _flown(ctx, drawing, cell["limit"], warm)
     row |= {"gpu_bytes": drawing.nbytes(), "features": list(drawing.explain().get("features", ()))}
     if warm:
         if not drawing.waits:

@@ -9,8 +9,6 @@ from importlib import import_module
 from typing import Any
 from unittest.mock import patch
 
-__all__ = ["replaced"]
-
 ENGINE = "pvfiblets.engine"
 
 

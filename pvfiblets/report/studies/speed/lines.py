@@ -11,7 +11,7 @@ import time
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,7 +24,8 @@ from ...window import Window
 from .cells import DEGREES_PER_FRAME, PER_STREAMLINE, WARM
 from .study import FRAMES, LIMIT, QUICK_FRAMES, QUICK_SECONDS, by_size
 
-__all__ = ["STUDY", "LinesStudy", "measure_lines"]
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
 
 SEGMENTS, QUICK_SEGMENTS = (1e5, 3e5, 1e6, 3e6, 6e6, 1e7), (2e4,)
 SIZE, QUICK_SIZE = (1920, 1080), (320, 180)
@@ -80,7 +81,7 @@ class LinesStudy:
                         continue
                     cell = {"method": method, "aliased": bool(setting), "path": str(path), "size": size,
                             "frames": frames, "limit": seconds}  # fmt: skip
-                    process = CellProcess.of("pvfiblets.report.studies.speed.lines")
+                    process = CellProcess.for_module("pvfiblets.report.studies.speed.lines")
                     row = process.measure(cell, LIMIT)
                     process.close()
                     if "unmeasured" in row:
@@ -124,7 +125,7 @@ def measure_lines(cell: Row) -> Row:
 
         compress(brain_streamlines(10), exact=False)  # the codec compiles itself when first used
         load = time.perf_counter()
-        fiblets: Any = compress(formats.read(cell["path"]), exact=False)
+        fiblets: FibletSet = compress(formats.read(cell["path"]), exact=False)
         points, actor = fiblets.n_points, plotter.add_fiblets(fiblets, render=False)
     else:
         import pyvista as pv

@@ -15,8 +15,6 @@ from ...record import Axes, Figure, Record
 from ...study import Options
 from ...timing import Comparison, Turns
 
-__all__ = ["STUDY", "ReadingStudy"]
-
 STREAMLINES, QUICK_STREAMLINES = 80_000, 500  # of some 188 points
 STEP = 0.5  # mm
 SUFFIXES = (".tck", ".trk", ".trx")

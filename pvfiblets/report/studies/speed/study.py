@@ -18,8 +18,6 @@ from ...study import Options
 from ...timing import timing
 from .cells import stored_brain
 
-__all__ = ["STUDY", "SpeedStudy", "by_size", "measured", "sections"]
-
 SEGMENTS, QUICK_SEGMENTS = (1e6, 6e6, 60e6, 434e6, 1e9, 5.4e9), (5e4, 2e5)  # Schertzer et al. 2022, table 2
 STRIPS, QUICK_STRIPS = (8e6, 81e6, 202e6, 434e6), (5e4,)  # and table 3
 STEP = 0.1  # mm between points; the paper's are 0.1 and 0.05
@@ -73,7 +71,7 @@ class SpeedStudy:
         pipelines = sorted((info.name for info in known if info.available), key=lambda name: name != fastest)
         with ExitStack() as stack:
             folder = os.environ.get(BRAINS) or stack.enter_context(tempfile.TemporaryDirectory())
-            process = CellProcess.of("pvfiblets.report.studies.speed.cells")
+            process = CellProcess.for_module("pvfiblets.report.studies.speed.cells")
             stack.callback(process.close)
             hopeless: set[tuple[Any, ...]] = set()
             parts = sections(options.quick, pipelines)

@@ -18,8 +18,6 @@ from .decode_cases import stiff
 from .render_checks import Array, camera, drawn, pixel_rays
 from .synthetic_lines import lines_of, tracking, zigzag
 
-__all__ = ["CASES"]
-
 CASES = Cases("capsules and tubes of lines")
 SIZE = (48, 36)
 
@@ -59,7 +57,7 @@ def _from_segment(points: Array, a: Array, b: Array) -> Array:
     return found
 
 
-def entries(lines: list[npt.NDArray[Any]], radius: float, o: Array, d: Array) -> Array:
+def _entries(lines: list[npt.NDArray[Any]], radius: float, o: Array, d: Array) -> Array:
     """Return how far rays go until they enter one of the lines' capsules; inf where they meet none."""
     nearest = np.full(len(o), np.inf)
     for line in lines:
@@ -103,7 +101,7 @@ def _tubes(setting: Setting) -> Outcome:
         matrix = camera(SIZE, eye=(0.0, -eye, 0.2 * eye), near=1.0, far=3.0 * eye)
         shown = drawn(setting.gl, fiblets, View(SIZE, matrix), FibletStyle(radius=radius, tolerance=0.0))
         o, d = pixel_rays(matrix, SIZE)
-        there = [np.isfinite(entries(decoded, radius * factor, o, d)) for factor in (1.0, 0.98, 1.02)]
+        there = [np.isfinite(_entries(decoded, radius * factor, o, d)) for factor in (1.0, 0.98, 1.02)]
         sure = (there[0] == there[1]) & (there[0] == there[2])
         wrong = sure & (shown.there.ravel() != there[0])
         if radius < 1.0:  # thinner than a pixel in places, and then drawn a pixel wide

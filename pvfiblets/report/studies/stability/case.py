@@ -12,8 +12,6 @@ import numpy as np
 if TYPE_CHECKING:
     import moderngl
 
-__all__ = ["Case", "Cases", "Outcome", "Setting", "refused"]
-
 
 @dataclass(frozen=True)
 class Setting:

@@ -15,8 +15,6 @@ from pvfiblets.streamlines import Streamlines
 from .case import Cases, Outcome, Setting, refused, worst
 from .synthetic_lines import differences, helix, lines_of, tracking, turning, zigzag
 
-__all__ = ["CASES"]
-
 CASES = Cases("codec")
 WITHIN = "every decoded point within the promise of its original; counts as they were"
 BOUND = "of the error bound"
@@ -26,7 +24,7 @@ SIZES = (1e-6, 1e-3, 1.0, 1e3, 1e6)  # mm
 MANY, LONG, LONG_IN_TESTS = 1_000_000, 10_000_000, 1_000_000
 
 
-def kept(
+def _kept(
     sets: Iterable[Streamlines], efforts: Iterable[Effort] = EFFORTS, max_error: float | None = None, note: str = ""
 ) -> Outcome:
     """Compress with every effort and decode in float64; measure the largest error over the error bound."""
@@ -49,68 +47,69 @@ def kept(
 
 @CASES.add("turns from 1e-6 to π", "25 lines of constant step, each with one angle at every point", WITHIN, long=True)
 def _angles(_: Setting) -> Outcome:
-    alone = kept([lines_of(turning(angle)) for angle in ANGLES], ["fast"])
-    return worst([alone, kept([lines_of(*map(turning, ANGLES))])])
+    alone = _kept([lines_of(turning(angle)) for angle in ANGLES], ["fast"])
+    return worst([alone, _kept([lines_of(*map(turning, ANGLES))])])
 
 
 @CASES.add("alternating turns of 180°", "500 points back and forth between two places", WITHIN)
 def _back_and_forth(_: Setting) -> Outcome:
-    return kept([lines_of(zigzag())])
+    return _kept([lines_of(zigzag())])
 
 
 @CASES.add("exactly straight", "lines along ±x, ±y, ±z and a diagonal: cap angle 0", WITHIN)
 def _straight(_: Setting) -> Outcome:
     directions = np.concatenate([np.eye(3), -np.eye(3), [[1.0, 1.0, 1.0]]])
-    return kept([lines_of(*(0.5 * np.arange(300)[:, None] * direction for direction in directions))])
+    return _kept([lines_of(*(0.5 * np.arange(300)[:, None] * direction for direction in directions))])
 
 
 @CASES.add("helix at the step's Nyquist", "turns of π − 0.001 from point to point, pitch 0.01 mm", WITHIN)
 def _helix(_: Setting) -> Outcome:
-    return kept([lines_of(helix()), lines_of(helix(turn=np.pi, pitch=1e-5))])
+    return _kept([lines_of(helix()), lines_of(helix(turn=np.pi, pitch=1e-5))])
 
 
 @CASES.add("steps from 1e-6 to 1e6 mm", "tracking of one constant step each, over twelve decades", WITHIN)
 def _steps(_: Setting) -> Outcome:
     base = tracking(4)
-    return kept([Streamlines(base.points * size, base.offsets) for size in SIZES])
+    return _kept([Streamlines(base.points * size, base.offsets) for size in SIZES])
 
 
 @CASES.add("steps from 1e-6 to 1e6 mm in one streamline", "400 random steps over twelve decades", WITHIN)
 def _mixed_steps(_: Setting) -> Outcome:
     rng = np.random.default_rng(3)
     steps = 10.0 ** rng.uniform(-6.0, 6.0, (400, 1)) * rng.normal(size=(400, 3))
-    return kept([lines_of(np.cumsum(steps, axis=0)), lines_of(np.cumsum(steps, axis=0), tracking(1).points)])
+    return _kept([lines_of(np.cumsum(steps, axis=0)), lines_of(np.cumsum(steps, axis=0), tracking(1).points)])
 
 
 @CASES.add("one step of 1e5 mm among steps of 0.5 mm", "a jump within a line of constant step", WITHIN)
 def _jump(_: Setting) -> Outcome:
     line = np.array(tracking(1).points)
     line[60:] += 1e5
-    return kept([lines_of(line)])
+    return _kept([lines_of(line)])
 
 
 @CASES.add("offsets of ±1e7 mm", "tracking moved by 1e7 mm either way, in float64 and in float32", WITHIN)
 def _offsets(_: Setting) -> Outcome:
     base = tracking(4)
     far = [base.points + sign * 1e7 for sign in (1.0, -1.0)]
-    return kept([Streamlines(points.astype(kind), base.offsets) for points in far for kind in (np.float64, np.float32)])
+    kinds = (np.float64, np.float32)
+    return _kept([Streamlines(points.astype(kind), base.offsets) for points in far for kind in kinds])
 
 
 @CASES.add("steps of no length", "every point four times; all points of a line the same", WITHIN)
 def _no_length(_: Setting) -> Outcome:
     rng = np.random.default_rng(4)
-    return kept([lines_of(np.repeat(rng.normal(size=(30, 3)), 4, axis=0)), lines_of(np.full((100, 3), 7.25))])
+    return _kept([lines_of(np.repeat(rng.normal(size=(30, 3)), 4, axis=0)), lines_of(np.full((100, 3), 7.25))])
 
 
 @CASES.add("denormal coordinates", "coordinates of 1e-310 mm and of 1e-40 mm", WITHIN)
 def _denormals(_: Setting) -> Outcome:
     some = np.random.default_rng(5).normal(size=(70, 3))
-    return kept([lines_of(some * 1e-310), lines_of(some * 1e-40)])
+    return _kept([lines_of(some * 1e-310), lines_of(some * 1e-40)])
 
 
 @CASES.add("huge coordinates", "coordinates of 1e34 mm, near float32's end", WITHIN)
 def _huge(_: Setting) -> Outcome:
-    return kept([lines_of(np.random.default_rng(5).normal(size=(70, 3)) * 1e34)])
+    return _kept([lines_of(np.random.default_rng(5).normal(size=(70, 3)) * 1e34)])
 
 
 @CASES.add("nothing, or hardly anything", "no streamlines; empty ones among others; only ones of one point", WITHIN)
@@ -123,7 +122,7 @@ def _nothing(_: Setting) -> Outcome:
         Streamlines(points, [0, 0, 4, 4, 10, 10]),
         Streamlines(points, np.arange(11)),
     ]
-    return kept(sets)
+    return _kept(sets)
 
 
 @CASES.add("a million streamlines of 2 points", "random short segments within 200 mm", WITHIN, long=True)
@@ -131,7 +130,7 @@ def _many(_: Setting) -> Outcome:
     rng = np.random.default_rng(6)
     first = rng.uniform(-100.0, 100.0, (MANY, 1, 3)).astype(np.float32)
     points = np.concatenate([first, first + rng.normal(0.0, 1.0, (MANY, 1, 3)).astype(np.float32)], axis=1)
-    return kept([Streamlines(points.reshape(-1, 3), 2 * np.arange(MANY + 1))], ["fast"])
+    return _kept([Streamlines(points.reshape(-1, 3), 2 * np.arange(MANY + 1))], ["fast"])
 
 
 @CASES.add(
@@ -145,12 +144,12 @@ def _long(setting: Setting) -> Outcome:
     t = np.arange(n) * (0.2 / 40.0)
     points = np.empty((n, 3), np.float32)  # about 40 mm round, and 0.2 mm from point to point
     points[:, 0], points[:, 1], points[:, 2] = 40.0 * np.cos(t), 40.0 * np.sin(t), 20.0 * np.sin(0.01 * t)
-    return kept([Streamlines(points, [0, n])], ["fast"], note=f"{n:,} points")
+    return _kept([Streamlines(points, [0, n])], ["fast"], note=f"{n:,} points")
 
 
 @CASES.add("promises from 1e-6 mm to 1e4 steps", "two millionths of a step, and far coarser ones", WITHIN)
 def _promises(_: Setting) -> Outcome:
-    return worst([kept([tracking(3)], max_error=promise) for promise in (1e-6, 1e-3, 1.0, 5e3)])
+    return worst([_kept([tracking(3)], max_error=promise) for promise in (1e-6, 1e-3, 1.0, 5e3)])
 
 
 @CASES.add("all streamlines the same, in Hilbert order", "50 copies, and 50 single points at one place", WITHIN)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from pvfiblets.codec import reference
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.layout import DIRECTION, FIELDS, PAGE_BITS, STEP_LEVELS, unpack
 from pvfiblets.engine import FibletStyle, View
@@ -14,13 +13,11 @@ from pvfiblets.query.selection.endpoints import end_points
 from pvfiblets.report.studies.codec.coded import compress
 from pvfiblets.streamlines import Streamlines
 
-from ..decode import decoders
+from ..decode import decoders, reference
 from ..decode.study import Made, exact, made
 from .case import Cases, Outcome, Setting, worst
 from .render_checks import Array, camera, drawing
 from .synthetic_lines import differences, helix, lines_of, tracking, turning, zigzag
-
-__all__ = ["CASES", "stiff"]
 
 CASES = Cases("decode")
 OF_POINTS = ("length", "end_distance", "mean_curvature", "curvature", "arc_length")
@@ -45,7 +42,7 @@ def stiff() -> dict[str, Streamlines]:
     }
 
 
-def literal(fiblets: FibletSet, f: int) -> Array:
+def _literal(fiblets: FibletSet, f: int) -> Array:
     """Points of one fiblet as the codec's reference decodes them, mm."""
     number = {name: int(unpack(name, getattr(fiblets, field.array)[f])) for name, field in FIELDS.items()}
     anchor = np.array([number[f"anchor_{axis}"] for axis in "xyz"], np.float64)
@@ -71,7 +68,7 @@ def _two_decoders(_: Setting) -> Outcome:
         decoded = np.asarray(fiblets.decompress(dtype=np.float64).points)
         starts = np.append(fiblets.fiblet_points(), fiblets.n_points)
         for f in range(min(fiblets.n_fiblets, 40)):
-            mine = literal(fiblets, f)
+            mine = _literal(fiblets, f)
             off = float(differences(decoded[starts[f] : starts[f + 1]], mine).max(initial=0.0))
             rounding = 64.0 * float(np.spacing(np.abs(mine).max() + np.abs(fiblets.origin).max()))
             found.append(Outcome(off / (rounding + 1e-9 * fiblets.promise), 1.0, "of rounding", name))

@@ -19,15 +19,13 @@ from pvfiblets.streamlines import Streamlines
 from .case import Cases, Outcome, Setting, refused, worst
 from .synthetic_lines import differences, lines_of, tracking
 
-__all__ = ["CASES"]
-
 CASES = Cases("formats")
 WRITTEN = (".tck", ".trk", ".trx", ".vtk", ".vtp")
 HELD = "the same counts, every coordinate as float32 holds it; in .trk, whose 0 is a voxel's corner, as it holds 1 mm"
 ROUNDING = "of float32's rounding"
 
 
-def through_files(streamlines: Streamlines, slack: float = 0.0) -> Outcome:
+def _through_files(streamlines: Streamlines, slack: float = 0.0) -> Outcome:
     """Write and read by every format; errors are over float32's rounding of the largest coordinate, and `slack` mm."""
     found = []
     largest = float(np.abs(streamlines.points).max(initial=0.0))
@@ -57,26 +55,27 @@ def _far(_: Setting) -> Outcome:
     huge = lines_of((np.random.default_rng(5).normal(size=(70, 3)) * 1e30).astype(np.float32))
     away = [(base.points + by).astype(np.float32) for by in (1e7, -1e7)]  # in float64, writers report rounding
     sets = [*(Streamlines(points, base.offsets) for points in away), huge]
-    return worst([through_files(some) for some in sets])
+    return worst([_through_files(some) for some in sets])
 
 
 @CASES.add("coordinates of 1e-6 mm, denormal and 0", "tracking scaled, points of 1e-40 mm, points at 0", HELD)
 def _small(_: Setting) -> Outcome:
     base, some = tracking(3), np.random.default_rng(5).normal(size=(70, 3))
     sets = [Streamlines(base.points * 1e-6, base.offsets), lines_of(some * 1e-40), lines_of(np.zeros((9, 3)))]
-    return worst([through_files(lines, slack=1e-44) for lines in sets])
+    return worst([_through_files(lines, slack=1e-44) for lines in sets])
 
 
 @CASES.add("100,000 streamlines of 2 points", "random short segments", HELD)
 def _many(_: Setting) -> Outcome:
     points = np.random.default_rng(6).uniform(-100.0, 100.0, (200_000, 3)).astype(np.float32)
-    return through_files(Streamlines(points, 2 * np.arange(100_001)))
+    return _through_files(Streamlines(points, 2 * np.arange(100_001)))
 
 
 @CASES.add("no streamlines, and streamlines of one point", "nothing, and 50 single points", HELD)
 def _nothing(_: Setting) -> Outcome:
     points = np.random.default_rng(6).uniform(-100.0, 100.0, (50, 3))
-    return worst([through_files(Streamlines(np.empty((0, 3)), [0])), through_files(Streamlines(points, np.arange(51)))])
+    empty, single = Streamlines(np.empty((0, 3)), [0]), Streamlines(points, np.arange(51))
+    return worst([_through_files(empty), _through_files(single)])
 
 
 @CASES.add(

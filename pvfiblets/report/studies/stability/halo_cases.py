@@ -14,8 +14,6 @@ from pvfiblets.report.studies.halos.reference import LINE, NOTHING, picture
 from .case import Cases, Outcome, Setting, refused, worst
 from .render_checks import EMPTY, Array, camera
 
-__all__ = ["CASES"]
-
 CASES = Cases("halos", draws=True)
 SIZE = (96, 72)
 LOOK = HaloStyle(2.0, 7.0, 2.5, n_tapered=0, min_width=0.0)
@@ -25,13 +23,13 @@ WRONG = "wrong pixels"
 NEAR, DEPTH = 0.03, 1e-6  # pixels; window depth
 
 
-def of_lines(*lines: Any) -> HaloLines:
+def _of_lines(*lines: Any) -> HaloLines:
     """Lines of several vertices each."""
     parts = [np.asarray(line, np.float64).reshape(-1, 3) for line in lines]
     return HaloLines(np.concatenate(parts), np.cumsum([0, *map(len, parts)]))
 
 
-def wandering(n: int = 8, m: int = 7, seed: int = 0) -> HaloLines:
+def _wandering(n: int = 8, m: int = 7, seed: int = 0) -> HaloLines:
     """Lines of a step of 4 mm about 0 with few sharp bends."""
     rng = np.random.default_rng(seed)
     lines = []
@@ -39,10 +37,10 @@ def wandering(n: int = 8, m: int = 7, seed: int = 0) -> HaloLines:
         d = rng.normal(size=3) + np.cumsum(rng.normal(0.0, 0.05, (m, 3)), axis=0)
         places = np.cumsum(4.0 * d / np.linalg.norm(d, axis=1)[:, None], axis=0)
         lines.append(places - places.mean(axis=0) + rng.uniform(-10.0, 10.0, 3))
-    return of_lines(*lines)
+    return _of_lines(*lines)
 
 
-def kinds(setting: Setting, drawn: HaloLines | HaloPoints, view: View, look: HaloStyle) -> tuple[Any, Array]:
+def _kinds(setting: Setting, drawn: HaloLines | HaloPoints, view: View, look: HaloStyle) -> tuple[Any, Array]:
     """Return what each pixel shows, nothing, line or halo, and its window depth."""
     renderer = HaloRenderer(setting.gl, drawn)
     try:
@@ -57,7 +55,7 @@ def kinds(setting: Setting, drawn: HaloLines | HaloPoints, view: View, look: Hal
         renderer.release()
 
 
-def compare(
+def _compare(
     setting: Setting,
     drawn: HaloLines | HaloPoints,
     matrix: Array,
@@ -66,7 +64,7 @@ def compare(
 ) -> Outcome:
     """Compare a picture with the one in float64."""
     view = View(size, matrix)
-    kind, depth = kinds(setting, drawn, view, look)
+    kind, depth = _kinds(setting, drawn, view, look)
     wanted = picture(drawn, look, matrix, size)
     sure = (wanted.margin > NEAR) & (wanted.other > DEPTH)
     wrong = sure & ((kind != wanted.kind) | (np.abs(depth - wanted.depth) > DEPTH))
@@ -77,7 +75,7 @@ def compare(
 
 @CASES.add("segments of no length", "points twice, five times, at both ends; whole lines of one place", SURE)
 def _no_length(setting: Setting) -> Outcome:
-    drawn = of_lines(
+    drawn = _of_lines(
         [[-9, 0, 0], [0, 0, 0], [0, 0, 0], [9, 1, 0]],
         [[-9, 0, 6], *[[0, 0, 6]] * 5, [2, 0, 9]],
         [[-9, 0, -6], [-9, 0, -6], [9, 0, -6]],
@@ -85,33 +83,33 @@ def _no_length(setting: Setting) -> Outcome:
         [[3, 1, 12]] * 6,
         [[-3, 1, 12]] * 2,
     )
-    return compare(setting, drawn, camera(SIZE, eye=EYE, near=10.0, far=200.0, height=46.0))
+    return _compare(setting, drawn, camera(SIZE, eye=EYE, near=10.0, far=200.0, height=46.0))
 
 
 @CASES.add("steps of 1e-9 to 1e-4 mm", "a bend within no length", "the picture without it, but for 1 pixel in 1,000")
 def _short(setting: Setting) -> Outcome:
     view = View(SIZE, camera(SIZE, eye=EYE, near=10.0, far=200.0, height=46.0))
-    straight, _ = kinds(setting, of_lines([[-9, 0, 0], [0, 0, 0], [9, 0, 0]]), view, LOOK)
+    straight, _ = _kinds(setting, _of_lines([[-9, 0, 0], [0, 0, 0], [9, 0, 0]]), view, LOOK)
     found = []
     for step in (1e-9, 1e-6, 1e-4):
-        bent, _ = kinds(setting, of_lines([[-9, 0, 0], [0, 0, 0], [0, 0, step], [9, 0, 0]]), view, LOOK)
+        bent, _ = _kinds(setting, _of_lines([[-9, 0, 0], [0, 0, 0], [0, 0, step], [9, 0, 0]]), view, LOOK)
         found.append(Outcome(1e3 * float((bent != straight).mean()), 1.0, "pixels in 1,000", f"{step:g} mm"))
     return worst(found)
 
 
 @CASES.add("the eye on a line", "a line through the eye and along the view, perspective, among others", SURE)
 def _through_the_eye(setting: Setting) -> Outcome:
-    drawn = of_lines([[0, -40, 0], [0, -1, 0], [0, 0, 0], [0, 5, 0], [0, 40, 0]], [[-9, 20, 3], [9, 21, 4]])
-    return compare(setting, drawn, camera(SIZE, eye=(0.0, 0.0, 0.0), target=(0.0, 1.0, 0.0), near=0.1, far=50.0))
+    drawn = _of_lines([[0, -40, 0], [0, -1, 0], [0, 0, 0], [0, 5, 0], [0, 40, 0]], [[-9, 20, 3], [9, 21, 4]])
+    return _compare(setting, drawn, camera(SIZE, eye=(0.0, 0.0, 0.0), target=(0.0, 1.0, 0.0), near=0.1, far=50.0))
 
 
 @CASES.add("seen end on", "lines along the view's axis, parallel and in perspective", SURE)
 def _end_on(setting: Setting) -> Outcome:
     along, bent = [[6, -9, 0], [6, -8, 0], [6, -7, 0]], [[-9, 0, 5], [-2, 0, 5], [-2, 6, 5]]
-    drawn = of_lines([[0, -5, 0], [0, 5, 0]], along, bent)
+    drawn = _of_lines([[0, -5, 0], [0, 5, 0]], along, bent)
     return worst(
         [
-            compare(setting, drawn, camera(SIZE, eye=(0.0, -60.0, 0.0), near=10.0, far=200.0, height=height))
+            _compare(setting, drawn, camera(SIZE, eye=(0.0, -60.0, 0.0), near=10.0, far=200.0, height=height))
             for height in (None, 32.0)
         ]
     )
@@ -121,34 +119,34 @@ def _end_on(setting: Setting) -> Outcome:
 def _nothing(setting: Setting) -> Outcome:
     view, none = View(SIZE, camera(SIZE, eye=EYE, near=10.0, far=200.0)), np.zeros((0, 3))
     lines = [HaloLines(none, np.zeros(n, np.int64)) for n in (1, 3)]
-    sets: list[HaloLines | HaloPoints] = [*lines, of_lines([[1, 2, 3]], [[4, 5, 6]]), HaloPoints(none)]
-    shown = sum(int((kinds(setting, some, view, LOOK)[0] != NOTHING).sum()) for some in sets)
+    sets: list[HaloLines | HaloPoints] = [*lines, _of_lines([[1, 2, 3]], [[4, 5, 6]]), HaloPoints(none)]
+    shown = sum(int((_kinds(setting, some, view, LOOK)[0] != NOTHING).sum()) for some in sets)
     return Outcome(float(shown), 0.0, "pixels shown")
 
 
 @CASES.add("strips wider than the scene", "500 mm wide, that lie 50 mm back", SURE)
 def _wide(setting: Setting) -> Outcome:
     look = HaloStyle(1.0, 500.0, 50.0, n_tapered=0, min_width=0.0)
-    return compare(setting, wandering(6, 2, 1), camera(SIZE, eye=EYE, near=10.0, far=200.0), look=look)
+    return _compare(setting, _wandering(6, 2, 1), camera(SIZE, eye=EYE, near=10.0, far=200.0), look=look)
 
 
 @CASES.add("offsets of ±1e7 mm", "lines and camera moved by 1e7 mm either way", SURE)
 def _far_away(setting: Setting) -> Outcome:
-    base, matrix, found = wandering(), camera(SIZE, eye=EYE, near=10.0, far=200.0), []
+    base, matrix, found = _wandering(), camera(SIZE, eye=EYE, near=10.0, far=200.0), []
     for shift in (1e7, -1e7):
         back = np.eye(4)
         back[:3, 3] = -shift
-        found.append(compare(setting, HaloLines(base.points + shift, base.offsets), matrix @ back))
+        found.append(_compare(setting, HaloLines(base.points + shift, base.offsets), matrix @ back))
     return worst(found)
 
 
 @CASES.add("sizes of 1e-6 and 1e6", "lines, widths and camera scaled by a millionth and by a million", SURE)
 def _sizes(setting: Setting) -> Outcome:
-    base, matrix, found = wandering(), camera(SIZE, eye=EYE, near=10.0, far=200.0), []
+    base, matrix, found = _wandering(), camera(SIZE, eye=EYE, near=10.0, far=200.0), []
     for size in (1e-6, 1e6):
         back = np.diag([1 / size, 1 / size, 1 / size, 1.0])
         look = HaloStyle(2.0 * size, 7.0 * size, 2.5 * size, n_tapered=0, min_width=0.0)
-        found.append(compare(setting, HaloLines(base.points * size, base.offsets), matrix @ back, look=look))
+        found.append(_compare(setting, HaloLines(base.points * size, base.offsets), matrix @ back, look=look))
     return worst(found)
 
 
@@ -157,9 +155,9 @@ def _small(setting: Setting) -> Outcome:
     points = HaloPoints(np.random.default_rng(0).uniform(-14.0, 14.0, (60, 3)))
     return worst(
         [
-            compare(setting, drawn, camera(size, eye=EYE, near=10.0, far=200.0, height=46.0), size)
+            _compare(setting, drawn, camera(size, eye=EYE, near=10.0, far=200.0, height=46.0), size)
             for size in ((1, 1), (1, 50), (70, 1), (3, 2))
-            for drawn in (wandering(), points)
+            for drawn in (_wandering(), points)
         ]
     )
 
@@ -169,7 +167,7 @@ def _bad(_: Setting) -> Outcome:
     return refused(
         ValueError,
         "finite|line_width|strip_width|max_displacement|thresholds",
-        lambda: of_lines([[0, 0, 0], [np.nan, 0, 0]]),
+        lambda: _of_lines([[0, 0, 0], [np.nan, 0, 0]]),
         lambda: HaloPoints(np.full((2, 3), np.inf)),
         lambda: HaloStyle(0.0, 1.0, 1.0),
         lambda: HaloStyle(2.0, 1.0, 1.0),

@@ -15,8 +15,6 @@ from .case import Cases, Outcome, Setting, refused, worst
 from .render_checks import Array, camera, drawn, samples
 from .synthetic_lines import lines_of, tracking, zigzag
 
-__all__ = ["CASES"]
-
 CASES = Cases("picking and regions")
 SIZE = (160, 120)
 ALL = [[0.0, 0.0], [160.0, 0.0], [160.0, 120.0], [0.0, 120.0]]
@@ -25,7 +23,7 @@ SAME = "the streamlines found by a float64 search through their points, but for 
 WRONG = "wrong streamlines"
 
 
-def clearances(fiblets: FibletSet, matrix: Array, box: Array) -> Array:
+def _clearances(fiblets: FibletSet, matrix: Array, box: Array) -> Array:
     """Return of each streamline how far from a rectangle it passes, pixels: below 0 inside, inf if unseen."""
     low, high = box.min(axis=0), box.max(axis=0)
     found = np.full(fiblets.n_streamlines, np.inf)
@@ -36,13 +34,13 @@ def clearances(fiblets: FibletSet, matrix: Array, box: Array) -> Array:
     return found
 
 
-def same(streamlines: Streamlines, matrix: Array, box: Array = BOX, edge: float = 0.5) -> Outcome:
+def _same(streamlines: Streamlines, matrix: Array, box: Array = BOX, edge: float = 0.5) -> Outcome:
     """Compare a pick with the search; those whose nearest place is `edge` pixels from the edge may go either way."""
     fiblets = compress(streamlines)
     under = under_polygon(fiblets, matrix, SIZE, box)
     inside = np.zeros(fiblets.n_streamlines, bool)
     inside[under.ids] = True
-    away = clearances(fiblets, matrix, box)
+    away = _clearances(fiblets, matrix, box)
     wrong = (inside & (away > edge)) | (~inside & (away < -edge))
     sound = np.isfinite(under.places).all() and (np.diff(under.depths) >= 0.0).all() and len(under.ids) > 0
     return Outcome(
@@ -56,7 +54,7 @@ def _places(_: Setting) -> Outcome:
     for scale, shift in ((1.0, 1e7), (1.0, -1e7), (1e-6, 0.0), (1e6, 0.0)):
         back = np.diag([1.0 / scale] * 3 + [1.0])
         back[:3, 3] = -shift / scale
-        found.append(same(Streamlines(base.points * scale + shift, base.offsets), matrix @ back))
+        found.append(_same(Streamlines(base.points * scale + shift, base.offsets), matrix @ back))
     return worst(found)
 
 
@@ -64,7 +62,7 @@ def _places(_: Setting) -> Outcome:
 def _near(_: Setting) -> Outcome:
     base = tracking(200, 60)
     eyes = ((0.0, -260.0, 60.0), (3.0, -4.0, 2.0))
-    return worst([same(base, camera(SIZE, eye=eye, near=1e-3, far=1e3)) for eye in eyes])
+    return worst([_same(base, camera(SIZE, eye=eye, near=1e-3, far=1e3)) for eye in eyes])
 
 
 @CASES.add("steps of 1e6 mm through the eye's plane", "lines that begin behind the eye and end far in front", SAME)
@@ -73,7 +71,7 @@ def _through(_: Setting) -> Outcome:
     ends = rng.uniform(-40.0, 40.0, (60, 2, 3)) + [[[0.0, -1e6, 0.0], [0.0, 1e6, 0.0]]]
     middle = 0.5 * (ends[:, :1] + ends[:, 1:])
     lines = lines_of(*np.concatenate([ends[:, :1], middle, ends[:, 1:]], axis=1))
-    return same(lines, camera(SIZE, eye=(0.0, -260.0, 10.0), near=1.0, far=900.0), BOX - [40.0, 30.0])
+    return _same(lines, camera(SIZE, eye=(0.0, -260.0, 10.0), near=1.0, far=900.0), BOX - [40.0, 30.0])
 
 
 @CASES.add(

@@ -10,14 +10,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 
-__all__ = ["EVERY_POINT", "OFF_LINE", "Picture", "camera", "drawing", "drawn", "off_lines", "pixel_rays", "read"]
+if TYPE_CHECKING:
+    import moderngl
+
+    from pvfiblets.codec.fibletset import FibletSet
 
 Array = npt.NDArray[np.float64]
 
@@ -106,7 +109,7 @@ def read(buffer: Any) -> Picture:
 
 
 @contextmanager
-def drawing(ctx: Any, fiblets: Any, **options: Any) -> Iterator[FibletRenderer]:
+def drawing(ctx: moderngl.Context, fiblets: FibletSet, **options: Any) -> Iterator[FibletRenderer]:
     """Give a renderer that is released afterwards."""
     renderer = FibletRenderer(ctx, fiblets, **options)
     try:
@@ -115,7 +118,9 @@ def drawing(ctx: Any, fiblets: Any, **options: Any) -> Iterator[FibletRenderer]:
         renderer.release()
 
 
-def drawn(ctx: Any, fiblets: Any, view: View, style: FibletStyle = EVERY_POINT, **options: Any) -> Picture:
+def drawn(
+    ctx: moderngl.Context, fiblets: FibletSet, view: View, style: FibletStyle = EVERY_POINT, **options: Any
+) -> Picture:
     """Draw one picture with a renderer of its own."""
     with drawing(ctx, fiblets, **options) as renderer:
         return read(renderer.render(view, style))

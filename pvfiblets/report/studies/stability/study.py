@@ -16,8 +16,6 @@ from ...study import Options, Unavailable
 from . import all_cases
 from .case import Case, Setting
 
-__all__ = ["STUDY", "StabilityStudy", "result_of"]
-
 
 def result_of(case: Case, setting: Setting) -> CaseResult:
     """Run one case; an unexpected error is its result. Warnings count as errors."""

@@ -7,8 +7,6 @@ import numpy.typing as npt
 
 from pvfiblets.streamlines import Streamlines
 
-__all__ = ["differences", "helix", "lines_of", "tracking", "turning", "zigzag"]
-
 Array = npt.NDArray[np.float64]
 
 

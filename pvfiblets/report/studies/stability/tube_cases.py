@@ -10,8 +10,8 @@ import numpy.typing as npt
 from pvfiblets.engine import View
 from pvfiblets.engine.tubes.options import TubeStyle
 from pvfiblets.engine.tubes.renderer import TubeRenderer
-from pvfiblets.engine.tubes.solver_probe import SolverProbe
 from pvfiblets.report.studies.tubes import reference
+from pvfiblets.report.studies.tubes.solver_probe import SolverProbe
 from pvfiblets.tubes.curves import controls, sample_spheres
 from pvfiblets.tubes.spline_tubes import SplineTubes
 

@@ -14,8 +14,6 @@ from ...study import LATE, Options, Unavailable
 from ...timing import timing
 from ..antialias.study import OURS, PictureWindow, Subject, differences
 
-__all__ = ["STUDY", "TranslucencyStudy"]
-
 SIZE, QUICK_SIZE = (800, 600), (320, 240)
 SEGMENTS, QUICK_SEGMENTS = 1_000_000, 60_000  # of a synthetic brain
 STEP, LENGTH = 0.5, 94.0  # mm, of its points and of its streamlines on average

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,8 @@ from ...timing import Turns, turns_of
 from .pictures import reversed_depth_of
 from .tessellated import TessellatedTubes
 
-__all__ = ["CastTubes", "Drawing", "MeshedTubes", "VisibleDepths", "drawings"]
+if TYPE_CHECKING:
+    import moderngl
 
 SIDES = ((6, 6), (12, 12), (30, 30), (6, 30))
 
@@ -55,7 +56,7 @@ class CastTubes:
 
     method = "ray cast"
 
-    def __init__(self, ctx: Any, tubes: SplineTubes, solver: str = "auto") -> None:
+    def __init__(self, ctx: moderngl.Context, tubes: SplineTubes, solver: str = "auto") -> None:
         from pvfiblets.engine.tubes import TubeRenderer
 
         self._ctx, self._renderer = ctx, TubeRenderer(ctx, tubes, solver=solver)
@@ -94,7 +95,9 @@ class MeshedTubes:
 
     method, ours, default = "tessellated", False, False
 
-    def __init__(self, ctx: Any, tubes: SplineTubes, size: tuple[int, int], sides: tuple[int, int]) -> None:
+    def __init__(
+        self, ctx: moderngl.Context, tubes: SplineTubes, size: tuple[int, int], sides: tuple[int, int]
+    ) -> None:
         self._ctx, self._tubes = ctx, TessellatedTubes(ctx, tubes, size, sides=sides)
         self.setting = f"{sides[0]} sides" if sides[0] == sides[1] else f"{sides[0]} to {sides[1]} sides by size"
         self.nbytes = self._tubes.nbytes
@@ -119,7 +122,7 @@ class MeshedTubes:
         self._tubes.release()
 
 
-def drawings(ctx: Any, tubes: SplineTubes, size: tuple[int, int]) -> list[Callable[[], Drawing]]:
+def drawings(ctx: moderngl.Context, tubes: SplineTubes, size: tuple[int, int]) -> list[Callable[[], Drawing]]:
     """Return what makes each method, the program's default first."""
     from pvfiblets.engine.tubes import SOLVERS
 

@@ -15,8 +15,6 @@ from ...cameras import Lens
 from .rays import radius_at
 from .reference import ENTRY, nearest_hits
 
-__all__ = ["FORMATS", "Truth", "helices", "outline", "sampled"]
-
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 

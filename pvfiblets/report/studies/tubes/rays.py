@@ -20,20 +20,6 @@ from pvfiblets.tubes import SplineTubes, curves
 from ...cameras import Lens, orbit, unit
 from .reference import Hits, hits, surface_distance
 
-__all__ = [
-    "CLASSES",
-    "GOAL",
-    "Rays",
-    "aimed",
-    "clearance",
-    "halves",
-    "of_class",
-    "of_set",
-    "radius_at",
-    "share",
-    "summary",
-]
-
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
@@ -109,7 +95,7 @@ def halves(count: int, rng: Any, length: Any, radius: Any, bend: float, change: 
     return made
 
 
-def flat_ended(count: int, rng: Any) -> Array:
+def _flat_ended(count: int, rng: Any) -> Array:
     """Return (count, 3, 4) halves of segments of length 1 with every combination of slopes of 0 at their nodes."""
     chord, pairs = unit(rng.normal(size=(count, 3))), np.arange(2 * count).reshape(-1, 2)
     slopes = np.concatenate(
@@ -145,7 +131,7 @@ CLASSES: dict[str, Callable[[int, Any], Array]] = {
     "thick": partial(halves, length=1.0, radius=2.0, bend=0.3, change=0.3),
     "blob": partial(halves, length=1.0, radius=20.0, bend=0.3, change=0.1),
     "cone": partial(halves, length=1.0, radius=0.3, bend=0.1, change=1.0),
-    "flat-ended": flat_ended,
+    "flat-ended": _flat_ended,
 }
 
 

@@ -30,9 +30,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.tubes.extrema import RAY, balanced, critical, intervals, least, moved, powers
-
-__all__ = ["CAP", "ENTRY", "EXIT", "MISS", "Hits", "Nearest", "hits", "nearest_hits", "surface_distance"]
+from .extrema import RAY, balanced, critical, intervals, least, moved, powers
 
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

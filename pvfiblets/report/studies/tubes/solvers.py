@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from ...study import LATE, Options
 from ...timing import clock_of, timing
 from .rays import CLASSES, GOAL, Rays, of_class, of_set
 from .sweeps import SWEEPS
+
+if TYPE_CHECKING:
+    import moderngl
 
 __all__ = ["SETS", "SET_SIZE", "ray_sweeps", "solvers"]
 
@@ -61,7 +64,7 @@ def variants(quick: bool) -> list[Variant]:
     return found
 
 
-def solvers(ctx: Any, options: Options) -> Iterator[Record]:
+def solvers(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     """Yield records of solvers alone, on rays at halves of each class."""
     count = QUICK_RAYS if options.quick else RAYS
     data = {f"rays at {name} tubes": partial(of_class, name, count, options.seed)
@@ -118,7 +121,7 @@ def hit_errors(found: dict[str, float]) -> dict[str, Figure]:
     return quantiles | {name: Figure(100.0 * found[key], "%") for name, key in shares.items()}
 
 
-def ray_sweeps(ctx: Any, options: Options) -> Iterator[Record]:
+def ray_sweeps(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     """Yield records of errors by ratios that end where float32 does: ours and the paper's."""
     chosen = [v for v in variants(True) if v.default or (v.solver == "bisection" and v.iterations == 20)]
     with _Probes(ctx, clock_of(ctx)[0]) as probes:
@@ -142,7 +145,7 @@ def ray_sweeps(ctx: Any, options: Options) -> Iterator[Record]:
 class _Probes(AbstractContextManager["_Probes"]):
     """Solvers on one context, one program for each however many iterations."""
 
-    def __init__(self, ctx: Any, clock: Callable[[], float]) -> None:
+    def __init__(self, ctx: moderngl.Context, clock: Callable[[], float]) -> None:
         self._ctx, self._clock = ctx, clock
         self._made: dict[tuple[str, bool], Any] = {}
 
@@ -152,7 +155,7 @@ class _Probes(AbstractContextManager["_Probes"]):
 
     def made(self, variant: Variant) -> Any:
         """Return a variant's solver, which is compiled when first asked for."""
-        from pvfiblets.engine.tubes.solver_probe import SolverProbe
+        from .solver_probe import SolverProbe
 
         key = variant.solver, variant.chain
         if key not in self._made:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from .rays import GOAL
 from .solvers import SET_SIZE, SETS, ray_sweeps, solvers
 from .sweeps import PICTURE_SWEEPS
 
+if TYPE_CHECKING:
+    import moderngl
+
 __all__ = ["STUDY", "TubesStudy"]
 
 SIZE, QUICK_SIZE = (480, 270), (160, 90)
@@ -36,7 +39,7 @@ SEGMENTS = 20_000  # of a set that are compared with their cubics
 # ----------------------------------------------------------------------------------------------------------- the parts
 
 
-def picture_sweeps(ctx: Any, options: Options) -> Iterator[Record]:
+def picture_sweeps(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     """Yield records of whole small pictures by ratio: how far the eye is, and how far the tubes are from 0."""
     for name, (about, ratios, make) in PICTURE_SWEEPS.items():
         if not options.allows(f"sweep of {about}"):
@@ -63,12 +66,12 @@ def picture_sweeps(ctx: Any, options: Options) -> Iterator[Record]:
             )  # fmt: skip
 
 
-def pictures(ctx: Any, options: Options) -> Iterator[Record]:
+def pictures(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     """Yield records of whole pictures: silhouettes and depths against float64, and what a picture takes."""
     yield from _helices("", partial(drawings, ctx), options)
 
 
-def sets(ctx: Any, options: Options) -> Iterator[Record]:
+def sets(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     """Yield records of pictures of the paper's sets by every solver, against float64 in a sample of the pixels."""
     from pvfiblets.engine.tubes import SOLVERS
 
@@ -189,7 +192,7 @@ def _measured(
             drawn.release()
 
 
-def stored(ctx: Any, options: Options) -> Iterator[Record]:
+def stored(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     """Yield records of depth by its stored format, and by the distance between the near and the far plane."""
     tubes, size = helices(2), QUICK_SIZE
     far = orbit(tubes, "far", 2, size)[0]
@@ -220,7 +223,7 @@ def stored(ctx: Any, options: Options) -> Iterator[Record]:
             )  # fmt: skip
 
 
-def halves(ctx: Any, options: Options) -> Iterator[Record]:  # noqa: ARG001 - as other parts
+def halves(ctx: moderngl.Context, options: Options) -> Iterator[Record]:  # noqa: ARG001 - as other parts
     """Yield records of how far the two quadratics of a segment are from its cubic, by the share of a derivative."""
     from pvfiblets.synthetic.tubes import tube_set
 

@@ -13,8 +13,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["TessellatedTubes", "across", "carried_normals"]
-
 Array = npt.NDArray[np.float64]
 
 LEAST_SIDES, MOST_SIDES, ADDITIONAL = 6, 30, 5  # the paper's

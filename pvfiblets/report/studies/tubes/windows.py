@@ -14,8 +14,6 @@ from ...drawing import data_bytes
 from ...window import Window
 from .drawings import Drawing, VisibleDepths
 
-__all__ = ["FilteredTubes", "ShadedLines", "WindowTubes", "window_drawings"]
-
 MESHES = ((6, 1), (12, 1), (30, 1), (12, 4), (30, 4))  # sides, samples of each segment
 MOST_CORNERS = 12_000_000  # of a mesh: VTK holds 115 bytes of each
 

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ...cameras import Camera
 
+if TYPE_CHECKING:
+    import moderngl
 
-def drawn(ctx: Any, renderer: Any, camera: Camera, style: Any) -> Any:
+
+def drawn(ctx: moderngl.Context, renderer: Any, camera: Camera, style: Any) -> Any:
     """Draw a picture, wait for it, and return its G-buffer."""
     from pvfiblets.engine import View
 
@@ -20,7 +23,7 @@ def drawn(ctx: Any, renderer: Any, camera: Camera, style: Any) -> Any:
     return buffer
 
 
-def drawing(ctx: Any, renderer: Any, style: Any) -> Callable[[Camera], object]:
+def drawing(ctx: moderngl.Context, renderer: Any, style: Any) -> Callable[[Camera], object]:
     """Return what draws a camera's picture in one style."""
     return lambda camera: drawn(ctx, renderer, camera, style)
 

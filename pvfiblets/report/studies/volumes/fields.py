@@ -7,8 +7,6 @@ import numpy.typing as npt
 
 from pvfiblets.volumes import RaycastVolume
 
-__all__ = ["DENSE", "field", "tables"]
-
 DENSE = 0.9  # opacity of a unit where tables are densest
 
 Array = npt.NDArray[np.float64]

@@ -43,8 +43,6 @@ from pvfiblets.volumes.transfer import Transfer
 
 from .reference_profiles import Profile
 
-__all__ = ["INTEGRATORS", "PANELS", "STABLE_UP_TO", "Row", "composed", "integrate", "preintegrated", "study"]
-
 Array = npt.NDArray[np.float64]
 Floats = npt.NDArray[Any]  # float32 or float64
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,7 +23,8 @@ from .pictures import light_of
 from .reference_profiles import profiles
 from .scene import TOLERANCE, circle
 
-__all__ = ["LIGHT_SIZE", "SIDE", "formulae", "integrators"]
+if TYPE_CHECKING:
+    import moderngl
 
 DENSITIES, QUICK_DENSITIES = (1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3), (0.1, 10.0, 1e3)
 STEPS, QUICK_STEPS = (0.25, 0.5, 1.0), (0.5,)  # voxels
@@ -34,7 +35,7 @@ LIGHT_PIXELS, QUICK_LIGHT_PIXELS = 3000, 300
 OFF = 0.01  # of colours and opacities: a share of pixels that are farther off is given
 
 
-def integrators(ctx: Any, options: Options) -> Iterator[Record]:
+def integrators(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     """Yield records of every integrator by transfer function, density and step; then how errors grow with density."""
     from pvfiblets.engine.volumes import VolumeRenderer
 
@@ -62,7 +63,8 @@ def integrators(ctx: Any, options: Options) -> Iterator[Record]:
 
 
 def _integrated(
-    ctx: Any, renderer: Any, volume: RaycastVolume, camera: Camera, transfer: Transfer, name: str, options: Options,
+    ctx: moderngl.Context, renderer: Any, volume: RaycastVolume, camera: Camera, transfer: Transfer, name: str,
+    options: Options,
 ) -> Iterator[Record]:  # fmt: skip
     from pvfiblets.engine.volumes import VolumeStyle
 
@@ -109,7 +111,7 @@ def _by_density(name: str, found: list[tuple[float, Record]]) -> Iterator[Record
             yield Record(name, "stiff", "light along a ray", integrator, step, errors, ours=True)
 
 
-def formulae(ctx: Any, options: Options) -> Iterator[Record]:  # noqa: ARG001 - as other parts
+def formulae(ctx: moderngl.Context, options: Options) -> Iterator[Record]:  # noqa: ARG001 - as other parts
     """Yield records of the bare formulae in float32, without the shaders' limits, against closed forms."""
     densities = QUICK_DENSITIES if options.quick else DENSITIES
     if not options.allows("bare formulae"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,8 @@ from . import reference
 from .drawing import sample
 from .openness import SETS, exact_openness, seen_from
 
-__all__ = ["RADIUS", "openness"]
+if TYPE_CHECKING:
+    import moderngl
 
 SAMPLES, QUICK_SAMPLES = (4, 8, 16, 32, 64, 128, 256, 512), (4, 16, 64)
 PIXELS, QUICK_PIXELS = 150, 40
@@ -27,7 +28,7 @@ SIZE, QUICK_SIZE = 256, 96
 RADIUS = 12.0  # mm of a ray
 
 
-def openness(ctx: Any, options: Options) -> Iterator[Record]:
+def openness(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     """Yield records of ambient occlusion by so many rays, beside a rule of directions whose rays end at exact roots."""
     voxels = QUICK_VOXELS if options.quick else VOXELS
     for number, (name, (make, value, away)) in enumerate(SETS.items()):
@@ -78,7 +79,7 @@ class _Picture:
     """A surface in a G-buffer, and the pass that finds how open it is."""
 
     def __init__(
-        self, ctx: Any, volume: RaycastVolume, value: float, away: tuple[float, float, float], side: int
+        self, ctx: moderngl.Context, volume: RaycastVolume, value: float, away: tuple[float, float, float], side: int
     ) -> None:
         from pvfiblets.engine import View
         from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle

@@ -14,8 +14,6 @@ from pvfiblets.volumes import RaycastVolume
 from ...cameras import Lens, unit
 from . import reference
 
-__all__ = ["SETS", "exact_openness", "opened_head", "seen_from"]
-
 BESIDE = 0.05  # mm
 DIRECTIONS = 48  # along each side of the rule of directions
 

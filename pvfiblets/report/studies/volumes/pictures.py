@@ -15,8 +15,6 @@ from ..culling.pictures import directions
 from . import reference
 from .scene import Look, Truth, grey_of, lit, truth
 
-__all__ = ["GroundTruth", "along_of", "colours_of", "ground_truth_of", "light_of", "places"]
-
 Array = npt.NDArray[np.float64]
 Words = npt.NDArray[np.uint32]
 

@@ -21,11 +21,6 @@ import numpy as np
 
 from pvfiblets.codec.jit import kernel
 
-__all__ = [
-    "NEAREST", "TRICUBIC", "TRILINEAR", "Scratch", "along", "enter", "evaluated", "extrema", "leave", "limits",
-    "sample", "scratch", "solved",
-]  # fmt: skip
-
 NEAREST, TRILINEAR, TRICUBIC = range(3)
 
 OVERSHOOT = ((4.0 / 3.0) ** 3 - 1.0) / 2.0

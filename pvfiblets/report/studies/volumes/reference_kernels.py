@@ -16,8 +16,6 @@ from pvfiblets.codec.jit import kernel
 
 from .reference_cells import NEAREST, Scratch, along, enter, evaluated, extrema, leave, limits, sample, scratch, solved
 
-__all__ = ["first_crossings", "gradients", "greatest", "samples", "step", "stretch"]
-
 SHORTEST = 1e-14  # part of its distance along a ray that a stretch takes at least to count
 
 

@@ -22,8 +22,6 @@ from pvfiblets.codec.jit import kernel
 from .reference_cells import Scratch, enter, evaluated, extrema, leave, limits, scratch, solved
 from .reference_kernels import step, stretch
 
-__all__ = ["integrals"]
-
 DEEPEST = 60  # halvings of a piece after which its ends are neighbouring floats
 
 ROUNDING = 1e-15  # of a part; no halving makes it less

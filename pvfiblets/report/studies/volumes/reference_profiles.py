@@ -23,8 +23,6 @@ import numpy.typing as npt
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import RaycastVolume
 
-__all__ = ["DENSE", "ENTRIES", "Profile", "profiles"]
-
 Array = npt.NDArray[np.float64]
 
 ENTRIES = 256  # of the profiles' tables: steep ones rise within one 255th of the values' range

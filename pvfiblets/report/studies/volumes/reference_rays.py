@@ -18,8 +18,6 @@ import numpy.typing as npt
 
 from pvfiblets.volumes.volume import RaycastVolume
 
-__all__ = ["Rays", "rays"]
-
 Array = npt.NDArray[np.float64]
 
 

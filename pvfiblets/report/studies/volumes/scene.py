@@ -19,8 +19,6 @@ from pvfiblets.volumes.raycast_options import RaycastOptions
 from ...cameras import ELEVATION, VERTICAL_ANGLE, Camera
 from . import reference
 
-__all__ = ["Look", "Truth", "circle", "grey_of", "ground_truth", "lit", "look_of", "truth"]
-
 GOLDEN = 360.0 * (1.0 - 2.0 / (1.0 + math.sqrt(5.0)))  # degrees: however few frames are drawn, they lie all around
 NEARER = 0.65  # of the distance from which all of the box is seen however it is turned
 TOLERANCE = 1e-5  # of the reference's light

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,7 +23,8 @@ from .pictures import GroundTruth, colours_of, ground_truth_of, places
 from .scene import Look, circle, look_of
 from .windows import beside_vtk
 
-__all__ = ["STUDY", "VolumeStudy", "settings"]
+if TYPE_CHECKING:
+    import moderngl
 
 PICTURE_STEPS, QUICK_PICTURE_STEPS = (2.0, 1.0, 0.5, 0.25, 0.125), (1.0, 0.25)
 VESSELS, QUICK_VESSELS = 128, 48
@@ -81,7 +82,7 @@ def _at_steps(name: str, how: str, quick: bool, fields: dict[str, Any]) -> Itera
             yield name, ", ".join(at), fields if usual else {**fields, "step": step}
 
 
-def pictures(ctx: Any, options: Options) -> Iterator[Record]:
+def pictures(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     """Yield records of all that may be set, in each mode, on a tree of vessels."""
     from pvfiblets.engine.volumes import VolumeRenderer
 
@@ -108,8 +109,8 @@ def pictures(ctx: Any, options: Options) -> Iterator[Record]:
 
 
 def _varied(
-    ctx: Any, renderer: Any, look: Look, exact: GroundTruth, name: str, kind: str, spread: float, spacing: float,
-    options: Options,
+    ctx: moderngl.Context, renderer: Any, look: Look, exact: GroundTruth, name: str, kind: str, spread: float,
+    spacing: float, options: Options,
 ) -> Iterator[Record]:  # fmt: skip
     from pvfiblets.engine.volumes import VolumeStyle
 

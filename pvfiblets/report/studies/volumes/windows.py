@@ -17,8 +17,6 @@ from ...timing import Comparison
 from ...window import Window
 from .scene import Look, circle, look_of, truth
 
-__all__ = ["WINDOWS", "CastWindow", "VTKWindow", "beside_vtk"]
-
 STEPS, QUICK_STEPS = (2.0, 1.0, 0.5, 0.25, 0.125, 0.0625), (1.0, 0.5)  # voxels; 0.5 is the default
 SIDES, QUICK_SIDES = (64, 256), (48,)  # voxels along each side
 SIZE, QUICK_SIZE = 512, 96

@@ -34,8 +34,6 @@ from pvfiblets.engine.fiblets.pipelines.compute import (
 from pvfiblets.engine.fiblets.pipelines.constants import CLASSES, GROUP_WORDS, VISIBILITY_WORDS
 from pvfiblets.engine.gl.passes import GROUP_SIZE, Passes
 
-__all__ = ["BANDWIDTH", "LATENCY", "Calls", "PassWork", "counted", "frame_lanes", "pass_work"]
-
 BANDWIDTH, LATENCY = 3.35e12, 5e-6
 """Bytes a second of an NVIDIA H100, and seconds of a dispatch that waits for the one before."""
 
@@ -106,7 +104,7 @@ class PassWork:
         return (self.read + self.written) / BANDWIDTH + LATENCY * dispatches
 
 
-def pipeline_of(renderer: FibletRenderer) -> ComputePipeline:
+def _pipeline_of(renderer: FibletRenderer) -> ComputePipeline:
     """Return the compute pipeline that a renderer draws with."""
     pipeline = renderer._pipeline  # noqa: SLF001 - its counts are of use only here
     assert isinstance(pipeline, ComputePipeline)
@@ -115,7 +113,7 @@ def pipeline_of(renderer: FibletRenderer) -> ComputePipeline:
 
 def pass_work(renderer: FibletRenderer, pixels: int, owned: int) -> dict[str, PassWork]:
     """Return the work of the last frame by pass, given its pixels, and how many of them show something."""
-    pipeline, fiblets = pipeline_of(renderer), renderer.explain()["fiblets"]
+    pipeline, fiblets = _pipeline_of(renderer), renderer.explain()["fiblets"]
     n = int(fiblets["total"])
     lengths = pipeline.list_lengths().sum(axis=(0, 2))
     marks, clusters = 4.0 * -(-n // 32), -(-n // CLUSTER)
@@ -147,7 +145,7 @@ def pass_work(renderer: FibletRenderer, pixels: int, owned: int) -> dict[str, Pa
 
 def frame_lanes(renderer: FibletRenderer, number: int, width: int) -> float:
     """Return the share of the lanes of subgroups so wide that work in a round of the last frame; NaN without any."""
-    pipeline = pipeline_of(renderer)
+    pipeline = _pipeline_of(renderer)
     busy = issued = 0
     for chunk, lengths in enumerate(pipeline.list_lengths()):
         for part, count in enumerate(lengths[number]):
@@ -155,14 +153,14 @@ def frame_lanes(renderer: FibletRenderer, number: int, width: int) -> float:
             if count <= pipeline.list_room(chunk):
                 issued += width * -(-int(count) // width)
                 continue
-            bits = round_bits(pipeline.read_marks(chunk), number, part)
+            bits = _round_bits(pipeline.read_marks(chunk), number, part)
             sets = np.bitwise_count(np.pad(bits, (0, -len(bits) % GROUP_WORDS))).reshape(-1, GROUP_WORDS).sum(axis=1)
             whole, left = np.divmod(sets.astype(np.int64), GROUP_SIZE)
             issued += int((whole * GROUP_SIZE + width * -(-left // width)).sum())
     return busy / issued if issued else float("nan")
 
 
-def round_bits(marks: npt.NDArray[np.uint32], number: int, part: int) -> npt.NDArray[np.uint32]:
+def _round_bits(marks: npt.NDArray[np.uint32], number: int, part: int) -> npt.NDArray[np.uint32]:
     """Return the bits of the fiblets of a round and class, as ``visibility_bits.glsl`` has them."""
     low, high, class_low, class_high, candidates, _, tied = marks
     of_round = {

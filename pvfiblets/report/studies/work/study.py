@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +19,10 @@ from ...study import Options
 from ..culling.pictures import views
 from .counts import ROUNDS, Calls, counted, frame_lanes, pass_work
 
-__all__ = ["STUDY", "WorkStudy"]
+if TYPE_CHECKING:
+    import moderngl
+
+    from pvfiblets.codec.fibletset import FibletSet
 
 SEGMENTS, QUICK_SEGMENTS = (6e6, 60e6, 434e6, 600e6), (2e5,)  # of synthetic brains
 STEP, LENGTH = 0.1, 94.0  # mm: distance of points; mean length of a streamline
@@ -76,7 +79,9 @@ def flight(bounds: Any, scene: str, size: tuple[int, int]) -> list[View]:
     return [*path[:-1], views(bounds, kind, JUMP, 2, size)[1]] if scene == "jump" else path
 
 
-def measured(ctx: Any, fiblets: Any, name: str, scene: str, size: tuple[int, int]) -> Iterator[Record]:
+def measured(
+    ctx: moderngl.Context, fiblets: FibletSet, name: str, scene: str, size: tuple[int, int]
+) -> Iterator[Record]:
     """Draw a scene, and yield the records of its last frame."""
     renderer = FibletRenderer(ctx, fiblets, pipeline="compute", culling="two-phase")
     try:

@@ -33,8 +33,6 @@ from ..errors import median_step
 from . import COUNT_BYTES
 from .octahedral import from_cap, pack, ratio_of, to_cap, unpack
 
-__all__ = ["DirectionsPacked", "PaperFiblets", "QFib", "widest_turn"]
-
 HEADER_BYTES = 32  # step, widest turn, origin and scale
 FIBLET_POINTS = 60
 FIBLET_BYTES = 80

@@ -13,8 +13,6 @@ import numpy.typing as npt
 
 from . import COUNT_BYTES
 
-__all__ = ["NumbersPacked", "float16", "int16", "squeezed_by_zlib", "squeezed_by_zstd"]
-
 TOP = 65535.0
 
 

@@ -1,23 +1,4 @@
-"""Greatest turns that the encoder may make, in plain NumPy and float64; `turn_kernels` compute the same.
-
-Symbols: ``u`` and ``v`` are the unit vectors of the segments before and after a point, ``u'`` and ``v'`` their
-decoded vectors, and ``A`` is the bound of the angle between the tangents, which are the directions of
-``S = u + v`` and of ``S' = u' + v'``. From ``|S' - S| <= |u' - u| + |v' - v|`` follows that the angle between both is
-at most ``A`` where
-
-    ``|u' - u| <= sin(A) |S| / 2`` and ``|v' - v| <= sin(A) |S| / 2``.
-
-Each segment so has a bound of its own, the lesser of its two ends', whatever its neighbours decode to: fiblets
-can be coded apart from each other. At the end of a line there is one segment only, and it has the whole bound. The
-sharper the bend, the shorter is ``S``, and the finer are its two segments coded.
-
-At the first point of a fiblet the renderers draw the direction ``v'`` of the segment after it: the segment before
-belongs to a fiblet that is not decoded there. So ``v'`` has to be within ``A`` of ``S`` at such a point. That bounds it
-by the chord of ``A`` less the distance of ``v`` from the unit vector of ``S``, and no fiblet should begin where ``v``
-alone is off by more than most of ``A``.
-
-Points at which no segment longer than a pixel ends, and those where a line turns back on itself, bound nothing.
-"""
+"""Greatest turns that the encoder may make, in plain NumPy and float64; `pvfiblets.codec.tangents` says why."""
 
 from __future__ import annotations
 
@@ -26,10 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .layout import MAX_POINTS
-from .tangents import LEAST_SUM, ONE_POINT
-
-__all__ = ["Turns", "cut", "may_turn"]
+from pvfiblets.codec.layout import MAX_POINTS
+from pvfiblets.codec.tangents import LEAST_SUM, ONE_POINT
 
 FIRST_SHARE = 0.8
 LOOK_BACK = 20

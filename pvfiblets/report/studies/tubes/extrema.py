@@ -15,8 +15,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["RAY", "balanced", "critical", "intervals", "least", "moved", "powers"]
-
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 

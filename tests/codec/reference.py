@@ -1,13 +1,8 @@
-"""The codec in plain NumPy and float64: what a fiblet means, literally, with no thought for speed.
+"""Encoding in plain NumPy and float64: the codes that the compiled kernels must give bit for bit.
 
-The compiled kernels must give the same codes bit for bit, and the shaders the same points within 1e-3 step. Points are
-millimetres relative to the set's origin throughout.
-
-Decoding (paper: Schertzer et al. 2022, section 3.3.1 and appendix B): ``P_0`` is the anchor, ``P_1 = P_0 + step d_1``;
-each code turns the frame, ``q <- q T[cap][code]``, and ``P <- P + step (q X)``.
-
-Encoding is closed loop: every code aims from the *decoded* previous point, in the decoded frame, at the true next
-point, so that errors do not add up; the code taken is the nearest of all 256, not a rounded u and v (appendix A).
+Points are millimetres relative to the set's origin throughout. Encoding is closed loop: every code aims from the
+*decoded* previous point, in the decoded frame, at the true next point, so that errors do not add up; the code taken is
+the nearest of all 256, not a rounded u and v (paper: Schertzer et al. 2022, appendix A).
 
 Fiblets whose steps vary, or bend too sharply, are coded as steps between the points of an integer lattice of edge
 ``h``: rounding to it errs by at most ``h sqrt(3) / 2`` whatever the steps, and adding integers does not drift.
@@ -20,25 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .direction_codebook import cap_ratios, directions, quaternions
-from .layout import DIRECTION_SCALE, PLAIN_BYTES, STEP_LEVELS, WIDE_HEADER, Kind
-from .turn_reference import Turns
+from pvfiblets.codec.direction_codebook import cap_ratios, directions, quaternions
+from pvfiblets.codec.layout import DIRECTION_SCALE, STEP_LEVELS, WIDE_HEADER, Kind
+from pvfiblets.report.studies.decode.reference import first_frame, product, rotate_x
 
-__all__ = [
-    "DirectionPiece",
-    "LatticePiece",
-    "choose_cap",
-    "choose_step",
-    "decode_direction",
-    "decode_lattice",
-    "encode_direction",
-    "encode_lattice",
-    "first_frame",
-    "pack_direction",
-    "plan_lattice",
-    "rotate_x",
-    "unpack_direction",
-]
+from .turn_reference import Turns
 
 Array = npt.NDArray[np.float64]
 RECORD_BYTES = 22
@@ -57,49 +38,9 @@ def pack_direction(d: Array) -> int:
     norm = abs(x) + abs(y) + abs(z)
     u, v = y / norm, z / norm
     if x < 0.0:
-        u, v = (1.0 - abs(v)) * _sign(u), (1.0 - abs(u)) * _sign(v)
+        u, v = (1.0 - abs(v)) * np.copysign(1.0, u), (1.0 - abs(u)) * np.copysign(1.0, v)
     iu, iv = int(np.rint(u * DIRECTION_SCALE)), int(np.rint(v * DIRECTION_SCALE))
     return (iu & 0xFFFF) | ((iv & 0xFFFF) << 16)
-
-
-def unpack_direction(word: int) -> tuple[Array, bool]:
-    """Undo :func:`pack_direction`."""
-    iu, iv = _int16(word & 0xFFFF), _int16(word >> 16)
-    u, v = iu / DIRECTION_SCALE, iv / DIRECTION_SCALE
-    forward = abs(iu) + abs(iv) <= int(DIRECTION_SCALE)
-    x = 1.0 - abs(u) - abs(v)
-    y, z = (u, v) if forward else ((1.0 - abs(v)) * _sign(u), (1.0 - abs(u)) * _sign(v))
-    r = 1.0 / np.sqrt(x * x + y * y + z * z)
-    return np.array([x * r, y * r, z * r]), forward
-
-
-def first_frame(word: int) -> tuple[Array, Array]:
-    """First direction and frame of a fiblet (the paper's ``M_0``, section 3.3.2)."""
-    d, forward = unpack_direction(word)
-    dx, dy, dz = d
-    q = np.array([1.0 + dx, 0.0, -dz, dy]) if forward else np.array([1.0 - dx, 0.0, dz, -dy])
-    r = 1.0 / np.sqrt(q[0] * q[0] + q[2] * q[2] + q[3] * q[3])
-    w, y, z = q[0] * r, q[2] * r, q[3] * r
-    return d, (np.array([w, 0.0, y, z]) if forward else np.array([-z, y, 0.0, w]))
-
-
-def rotate_x(q: Array) -> Array:
-    """First column of a quaternion's rotation matrix: where it turns X."""
-    w, x, y, z = q
-    return np.array([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)])
-
-
-def _product(a: Array, b: Array) -> Array:
-    w, x, y, z = a
-    tw, tx, ty, tz = b
-    return np.array(
-        [
-            w * tw - x * tx - y * ty - z * tz,
-            w * tx + x * tw + y * tz - z * ty,
-            w * ty - x * tz + y * tw + z * tx,
-            w * tz + x * ty - y * tx + z * tw,
-        ]
-    )
 
 
 # ------------------------------------------------------------------------------------------------- direction codes
@@ -159,26 +100,10 @@ def encode_direction(points: Array, anchor: Array, step: int, length: float, cap
         score = local[0] * reach[:, 0] + local[1] * reach[:, 1] + local[2] * reach[:, 2]
         code = int(np.argmax(score))
         codes[i - 2] = code
-        q = _product(q, table[code])
+        q = product(q, table[code])
         decoded[i] = p = p + length * rotate_x(q)
     error = max(_distance(a, b) for a, b in zip(points, decoded, strict=True))
     return DirectionPiece(shape, step, cap, codes, decoded, error)
-
-
-def decode_direction(
-    anchor: Array, shape: int, length: float, cap: int, codes: npt.NDArray[np.uint8], count: int
-) -> Array:
-    """Points of a DIRECTION fiblet, ``(count, 3)`` float64 (paper, section 3.3.1)."""
-    points = np.empty((count, 3))
-    points[0] = anchor
-    if count == 1:
-        return points
-    d, q = first_frame(shape)
-    points[1] = anchor + length * d
-    for i in range(2, count):
-        q = _product(q, quaternions()[cap, codes[i - 2]].astype(np.float64))
-        points[i] = points[i - 1] + length * rotate_x(q)
-    return points
 
 
 # --------------------------------------------------------------------------------------------------- lattice codes
@@ -314,27 +239,6 @@ def encode_lattice(
     return LatticePiece(box.kind, shape, step, halvings, codes, anchor + edge * k)
 
 
-def decode_lattice(
-    anchor: Array, kind: int, shape: int, step: int, edge: float, codes: npt.NDArray[np.uint8], count: int
-) -> Array:
-    """Points of a lattice fiblet, ``(count, 3)`` float64; ``edge`` is the file's edge halved ``cap`` times, mm."""
-    if kind == Kind.WIDE and step & 7 == 0:
-        steps = codes[: PLAIN_BYTES * (count - 1)].view("<i4").reshape(-1, 3).astype(np.int64)
-        return anchor + edge * np.concatenate([np.zeros((1, 3), np.int64), np.cumsum(steps, axis=0)])
-    if kind == Kind.WIDE:
-        lo = codes[:12].view("<i4").astype(np.int64)
-        nx, ny = (int(n) for n in codes[12:20].view("<u4"))
-        width, body = step & 7, codes[WIDE_HEADER:]
-    else:
-        lo = np.array([(shape >> s & 0xFF) for s in (0, 8, 16)], np.uint8).view(np.int8).astype(np.int64)
-        nx, ny, width, body = (shape >> 24) + 1, (step & 0xFF) + 1, kind, codes
-    k = np.zeros((count, 3), np.int64)
-    for i in range(1, count):
-        value = int.from_bytes(body[(i - 1) * width : i * width].tobytes(), "little")
-        k[i] = k[i - 1] + lo + (value % nx, value // nx % ny, value // (nx * ny))
-    return anchor + edge * k
-
-
 # --------------------------------------------------------------------------------------------------------- helpers
 
 
@@ -353,11 +257,3 @@ def _unrotate(q: Array, v: Array) -> Array:
 def _distance(a: Array, b: Array) -> float:
     d = a - b
     return float(np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]))
-
-
-def _sign(value: float) -> float:
-    return 1.0 if value >= 0.0 else -1.0
-
-
-def _int16(bits: int) -> int:
-    return bits - 0x10000 if bits & 0x8000 else bits

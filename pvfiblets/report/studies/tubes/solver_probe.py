@@ -13,13 +13,11 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..gl.bindings import BLOCKS, TUBE_PROBE
-from ..gl.moderngl_extras import GLExtras
-from ..gl.shaders import Programs
-from .options import SOLVERS, check_choices
-from .uniform_blocks import SPLINES_BLOCK
-
-__all__ = ["SolverProbe"]
+from pvfiblets.engine.gl.bindings import BLOCKS, TUBE_PROBE
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.shaders import Programs
+from pvfiblets.engine.tubes.options import SOLVERS, check_choices
+from pvfiblets.engine.tubes.uniform_blocks import SPLINES_BLOCK
 
 Array = npt.NDArray[np.float64]
 

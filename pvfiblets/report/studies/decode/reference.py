@@ -1,0 +1,102 @@
+"""Decoding in plain NumPy and float64: what a fiblet's codes mean, literally, with no thought for speed.
+
+Compiled decoding must give the same points, and shaders the same within 1e-3 step. Points are millimetres relative to
+the set's origin. ``P_0`` is the anchor, ``P_1 = P_0 + step d_1``; each code turns the frame, ``q <- q T[cap][code]``,
+and ``P <- P + step (q X)`` (paper: Schertzer et al. 2022, section 3.3.1 and appendix B).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.codec.direction_codebook import quaternions
+from pvfiblets.codec.layout import DIRECTION_SCALE, PLAIN_BYTES, WIDE_HEADER, Kind
+
+Array = npt.NDArray[np.float64]
+
+
+def first_frame(word: int) -> tuple[Array, Array]:
+    """First direction and frame of a fiblet (the paper's ``M_0``, section 3.3.2)."""
+    d, forward = _unpack_direction(word)
+    dx, dy, dz = d
+    q = np.array([1.0 + dx, 0.0, -dz, dy]) if forward else np.array([1.0 - dx, 0.0, dz, -dy])
+    r = 1.0 / np.sqrt(q[0] * q[0] + q[2] * q[2] + q[3] * q[3])
+    w, y, z = q[0] * r, q[2] * r, q[3] * r
+    return d, (np.array([w, 0.0, y, z]) if forward else np.array([-z, y, 0.0, w]))
+
+
+def rotate_x(q: Array) -> Array:
+    """First column of a quaternion's rotation matrix: where it turns X."""
+    w, x, y, z = q
+    return np.array([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)])
+
+
+def product(a: Array, b: Array) -> Array:
+    """Product of two quaternions, ``w`` first."""
+    w, x, y, z = a
+    tw, tx, ty, tz = b
+    return np.array(
+        [
+            w * tw - x * tx - y * ty - z * tz,
+            w * tx + x * tw + y * tz - z * ty,
+            w * ty - x * tz + y * tw + z * tx,
+            w * tz + x * ty - y * tx + z * tw,
+        ]
+    )
+
+
+def decode_direction(
+    anchor: Array, shape: int, length: float, cap: int, codes: npt.NDArray[np.uint8], count: int
+) -> Array:
+    """Points of a DIRECTION fiblet, ``(count, 3)`` float64 (paper, section 3.3.1)."""
+    points = np.empty((count, 3))
+    points[0] = anchor
+    if count == 1:
+        return points
+    d, q = first_frame(shape)
+    points[1] = anchor + length * d
+    for i in range(2, count):
+        q = product(q, quaternions()[cap, codes[i - 2]].astype(np.float64))
+        points[i] = points[i - 1] + length * rotate_x(q)
+    return points
+
+
+def decode_lattice(
+    anchor: Array, kind: int, shape: int, step: int, edge: float, codes: npt.NDArray[np.uint8], count: int
+) -> Array:
+    """Points of a lattice fiblet, ``(count, 3)`` float64; ``edge`` is the file's edge halved ``cap`` times, mm."""
+    if kind == Kind.WIDE and step & 7 == 0:
+        steps = codes[: PLAIN_BYTES * (count - 1)].view("<i4").reshape(-1, 3).astype(np.int64)
+        return anchor + edge * np.concatenate([np.zeros((1, 3), np.int64), np.cumsum(steps, axis=0)])
+    if kind == Kind.WIDE:
+        lo = codes[:12].view("<i4").astype(np.int64)
+        nx, ny = (int(n) for n in codes[12:20].view("<u4"))
+        width, body = step & 7, codes[WIDE_HEADER:]
+    else:
+        lo = np.array([(shape >> s & 0xFF) for s in (0, 8, 16)], np.uint8).view(np.int8).astype(np.int64)
+        nx, ny, width, body = (shape >> 24) + 1, (step & 0xFF) + 1, kind, codes
+    k = np.zeros((count, 3), np.int64)
+    for i in range(1, count):
+        value = int.from_bytes(body[(i - 1) * width : i * width].tobytes(), "little")
+        k[i] = k[i - 1] + lo + (value % nx, value // nx % ny, value // (nx * ny))
+    return anchor + edge * k
+
+
+def _unpack_direction(word: int) -> tuple[Array, bool]:
+    """Unit vector that two snorm16 on the octahedron about +x stand for, and whether its x is not negative."""
+    iu, iv = _int16(word & 0xFFFF), _int16(word >> 16)
+    u, v = iu / DIRECTION_SCALE, iv / DIRECTION_SCALE
+    forward = abs(iu) + abs(iv) <= int(DIRECTION_SCALE)
+    x = 1.0 - abs(u) - abs(v)
+    y, z = (u, v) if forward else ((1.0 - abs(v)) * _sign(u), (1.0 - abs(u)) * _sign(v))
+    r = 1.0 / np.sqrt(x * x + y * y + z * z)
+    return np.array([x * r, y * r, z * r]), forward
+
+
+def _sign(value: float) -> float:
+    return 1.0 if value >= 0.0 else -1.0
+
+
+def _int16(bits: int) -> int:
+    return bits - 0x10000 if bits & 0x8000 else bits
