@@ -36,7 +36,7 @@ from pvfiblets.mappers.antialias_windows import finish, shown_pictures
 from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
 from pvfiblets.mappers.picture_prop import COLOUR, DEPTH, PictureProp, attachment
-from pvfiblets.mappers.scene import in_motion, items_of, lenses, streamed
+from pvfiblets.mappers.scene import in_motion, items_of, lenses, partly_shown, streamed
 from pvfiblets.mappers.scene_state import scene_state
 from pvfiblets.mappers.shifted_cameras import shifted
 from pvfiblets.mappers.tiles import Margin, margin_of
@@ -323,6 +323,8 @@ class Picture:
 
     def _insert(self) -> None:
         """Put the prop before all others of the renderer, while it draws: users' lists of actors lack it."""
+        if self._prop is None:  # who followed a frame within this one has switched it off
+            return
         props = self.renderer.GetViewProps()
         if props.GetNumberOfItems() == 0:
             props.AddItem(self._prop)  # there is none to insert it before
@@ -643,17 +645,22 @@ def _refinable(renderer: Any) -> bool:
 @contextmanager
 def _only(renderer: Any, props: list[Any]) -> Iterator[None]:
     """Show only some props of a renderer, without events and without a change of state."""
-    shown = renderer.GetViewProps()
-    kept = items_of(shown)
-    for prop in kept:
-        if prop not in props:
+    shown, address = renderer.GetViewProps(), renderer.GetAddressAsString("")
+    before = items_of(shown)
+    alone = [prop for prop in before if prop in props]
+    for prop in before:
+        if prop not in alone:
             shown.RemoveItem(prop)
+    partly_shown.add(address)
     try:
         yield
     finally:
+        partly_shown.discard(address)
+        left = items_of(shown)  # others may have added and removed some
         shown.RemoveAllItems()
-        for prop in kept:
-            shown.AddItem(prop)
+        for prop in [prop for prop in before if prop in left or prop not in alone] + left:
+            if not shown.IsItemPresent(prop):
+                shown.AddItem(prop)
 
 
 def _starts_empty(renderer: Any) -> bool:

@@ -26,6 +26,10 @@ streamed: dict[str, WeakSet[Any]] = {}
 """Engines that have parts of their sets at a time (`pvfiblets.mappers.streaming`), by the address of their
 vtkRenderer."""
 
+partly_shown: set[str] = set()
+"""Addresses of vtkRenderers that draw some of their props alone, and have no others meanwhile: whatever follows what a
+renderer shows waits until all are there again."""
+
 USUAL_DPI = 72  # default dots per inch of a vtkRenderWindow
 
 # 1 - window depth = w stands in the third place: NDC depth is 2 * depth - 1 = 1 - 2 * w.

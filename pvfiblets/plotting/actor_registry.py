@@ -20,6 +20,7 @@ from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import vtkPicker
 
 from pvfiblets.antialias import default_antialias
+from pvfiblets.mappers.scene import partly_shown
 from pvfiblets.plotting import exports, transparent, visible_picking  # noqa: F401 - registers them with plotters
 from pvfiblets.plotting.call_signature import document, refuse_unknown, split_arguments
 from pvfiblets.plotting.mesh_arguments import apply, translate
@@ -286,6 +287,8 @@ class ActorRegistry(Generic[A]):
 
     def _actors_changed(self, _renderer: Any, _event: str) -> None:
         """Follow actors into other renderers, and release the GPU memory of removed ones."""
+        if partly_shown:
+            return
         for actor in self:
             showing = [one for one, _, _ in self._renderers.values() if one.HasViewProp(actor)]
             for renderer in showing:

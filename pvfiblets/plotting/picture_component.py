@@ -19,6 +19,7 @@ from pvfiblets.mappers.antialias_refinement import Refinement
 from pvfiblets.mappers.antialias_windows import refine
 from pvfiblets.mappers.engine_mapper import shows_engine
 from pvfiblets.mappers.picture import DepthOfField, Picture
+from pvfiblets.mappers.scene import partly_shown
 from pvfiblets.plotting.antialias_pacing import Pacer
 from pvfiblets.plotting.components import register
 from pvfiblets.plotting.setting_places import OWN, Place
@@ -221,7 +222,8 @@ class PictureComponent:
 
     def follow(self, renderer: Any) -> None:
         """Update whether a renderer shows an object of this package."""
-        self._smooth_as_set(renderer)
+        if renderer.GetAddressAsString("") not in partly_shown:
+            self._smooth_as_set(renderer)
 
     def _read_antialias(self) -> str | int:
         return self._antialias.get(self._plotter.renderer.GetAddressAsString(""), default_antialias())

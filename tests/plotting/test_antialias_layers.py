@@ -270,6 +270,70 @@ def test_behind_the_mean_lies_the_picture_that_was_drawn_before(scene, change, m
     assert len(drawn) == sum(1 for one in plotter.fiblets if one.visibility)
 
 
+def test_beside_slices_lines_stay_in_all_views(lines, monkeypatch):
+    plotter = pv.Plotter(off_screen=True, window_size=(2 * SIZE[0], 2 * SIZE[1]), shape=(2, 2))
+    image = np.random.default_rng(0).uniform(size=(20, 20, 20)).astype(np.float32), np.diag([8.0, 8.0, 8.0, 1.0])
+    workspace = plotter.slices.workspace(image, thickness=4.0)
+    actor = plotter.add_fiblets(lines, color="yellow", lighting=False)
+    picture = shot(plotter)
+    assert plotter.picture.samples == 16
+    views = [plotter.renderer, *(pane.renderer for pane in workspace.panes.values())]
+    assert all(view.HasViewProp(actor) for view in views)
+    assert list(plotter.fiblets) == [actor]
+    with monkeypatch.context() as patch:
+        patch.setattr(Picture, "_lines_at_once", lambda *_: ([], []))
+        for view in views:
+            view.Modified()
+        plotter.picture.antialias = "off"
+        plotter.picture.antialias = "refined"
+        plotter.render()
+        singly = shot(plotter)
+    assert np.abs(picture - singly).mean() < 0.5
+    plotter.close()
+
+
+def test_selected_streamlines_stay_selected_beside_meshes(scene):
+    plotter, actor = scene
+    add_meshes(plotter, actor)
+    actor.select([3, 5])
+    shot(plotter)
+    before = plotter.renderer.GetViewProps().GetNumberOfItems()
+    plotter.camera.azimuth += 5
+    shot(plotter)
+    assert plotter.renderer.GetViewProps().GetNumberOfItems() == before
+    assert sorted(actor.selection) == [3, 5]
+
+
+@pytest.mark.parametrize("act", ["add", "remove", "stop"])
+def test_what_others_change_while_samples_are_drawn_stays_changed(scene, act):
+    plotter, actor = scene
+    add_meshes(plotter, actor)
+    plotter.show(auto_close=False)
+    plotter.camera.azimuth += 5
+    plotter.render()
+    mesh = pv.Sphere(radius=4.0)
+    done = []
+
+    def started(*_):
+        if not done and not plotter.renderer.HasViewProp(actor):
+            if act == "add":
+                done.append(plotter.add_mesh(mesh, name="new", render=False))
+            elif act == "remove":
+                done.append(next(one for one in plotter.renderer.actors.values() if one is not actor))
+                plotter.remove_actor(done[0], render=False)
+            else:
+                plotter.picture.antialias = "off"
+                done.append(None)
+
+    plotter.renderer.AddObserver("StartEvent", started)
+    shot(plotter)
+    assert done
+    assert plotter.renderer.HasViewProp(actor)
+    if act != "stop":
+        assert plotter.renderer.HasViewProp(done[0]) == (act == "add")
+    shot(plotter)
+
+
 @pytest.mark.parametrize("sets", [1, 2])
 def test_lines_beside_the_picture_are_not_in_it(lines, sets):
     plotter = pv.Plotter(off_screen=True, window_size=SIZE)

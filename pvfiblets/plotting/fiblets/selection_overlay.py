@@ -20,7 +20,7 @@ from vtkmodules.vtkRenderingCore import vtkActor
 from pvfiblets.mappers import Colouring, FibletMapper, TubeMapper
 from pvfiblets.mappers.line_tubes import Tubes
 from pvfiblets.mappers.picking import Layer
-from pvfiblets.mappers.scene import renderers_of, to_array
+from pvfiblets.mappers.scene import partly_shown, renderers_of, to_array
 from pvfiblets.mappers.shading import Silhouette
 from pvfiblets.mappers.windows import weak
 from pvfiblets.streamlines import Streamlines
@@ -134,6 +134,8 @@ class SelectionOverlay:
 
     def before_picture(self, renderer: Any) -> None:
         """Remove itself if the owner is gone, otherwise copy its state, before VTK lists its actors."""
+        if partly_shown:
+            return
         self.leave_with_owner()
         if renderer.GetAddressAsString("") in self._renderers:
             self.follow()

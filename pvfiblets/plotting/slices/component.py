@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 import numpy as np
 import pyvista as pv
 
+from pvfiblets.mappers.scene import partly_shown
 from pvfiblets.plotting.call_signature import document, plotter_method, refuse_unknown, split_arguments
 from pvfiblets.plotting.components import register
 from pvfiblets.plotting.settings import Given
@@ -330,6 +331,8 @@ class SlicesComponent:
 
     def _forget_removed(self, *_: Any) -> None:
         """Forget slices that are in no renderer any more."""
+        if partly_shown:
+            return
         for stack in self:
             shown = [plane for plane in stack if plane.renderer is not None]
             if shown and not any(plane.renderer.HasViewProp(plane.actor) for plane in shown):

@@ -13,6 +13,7 @@ from vtkmodules.vtkCommonCore import vtkWeakReference
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkRenderingCore import vtkTexture
 
+from pvfiblets.mappers.scene import partly_shown
 from pvfiblets.slices.frames import checked_position, covered, grid_of, plane_axes, turned
 
 if TYPE_CHECKING:
@@ -206,9 +207,9 @@ def on_events(caller: Any, events: tuple[str, ...], owner: Any, method: str) -> 
     """Call an owner's method at events of an object of VTK's; neither keeps the other alive."""
     reference = weakref.ref(owner)
 
-    def started(*_: Any) -> None:
+    def started(_caller: Any, event: str) -> None:
         alive = reference()
-        if alive is not None:
+        if alive is not None and not (event == "StartEvent" and partly_shown):
             getattr(alive, method)()
 
     tags = [caller.AddObserver(event, started) for event in events]
