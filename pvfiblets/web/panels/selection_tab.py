@@ -46,6 +46,8 @@ class SelectionActions(Actions):
             return False
         far = max(abs(pixels[-1][0] - pixels[0][0]), abs(pixels[-1][1] - pixels[0][1]))
         if tool == "pick" or (tool == "box" and far < CLICK) or (tool == "lasso" and len(pixels) < 3):
+            if self._app.matrix.pick(*pixels[-1]):
+                return False
             found = scene.selection.pick_at(*pixels[-1], mode=mode, tolerance=6.0)
             if found is None and mode == "replace":
                 self._app.say("There is no streamline there.")

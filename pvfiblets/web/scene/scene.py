@@ -184,6 +184,7 @@ class Scene:
         lines = [(layer, actor) for layer, actor in actors if layer.kind in LINES]
         self.canvas.become(state.painting, lines)
         self.bundles.sync.show(state, lines, regrouped)
+        self.matrix.draw(state)
         if state.background != self.plotter.background_color.hex_rgb:
             self.plotter.set_background(state.background)
         if state.measurements != self._measured:

@@ -18,6 +18,7 @@ from pvfiblets.web.scene import layers
 from pvfiblets.web.scene.actors import split_cuts
 from pvfiblets.web.scene.glyph_layers import GLYPHS
 from pvfiblets.web.scene.glyph_layers import arguments as glyph_arguments
+from pvfiblets.web.scene.matrix import graph_looks
 from pvfiblets.web.scene.slicing import image_looks
 from pvfiblets.web.session.document import LINES, Clip, Layer, Matrix, Source, volumes_of
 from pvfiblets.web.session.script_code import Python, code
@@ -322,7 +323,15 @@ class _Writer(ViewWriter):
             given["names"] = Python(f"as_label_table({self._file(matrix.names)}).names")
         parcels = self._parcels(matrix.labels)
         self._call("matrix = pvfiblets.connectome", f"{self._names[matrix.layer]}.fiblets", parcels, given)
-        self._lines += ["print(matrix)  # matrix.matrix has the numbers; matrix.save writes them", ""]
+        self._lines += ["print(matrix)  # matrix.matrix has the numbers; matrix.save writes them"]
+        found = self._scene.matrix.connectome(self._scene.state)
+        if matrix.graph and found is not None:
+            looks = {**graph_looks(found, matrix), "show_scalar_bar": False, "reset_camera": False}
+            self._call("graph = plotter.add_connectome", "matrix", parcels, looks)
+            if cell := self._scene.matrix.cell(self._scene.state):
+                self._imports.add("import numpy as np")
+                self._lines += [f"graph.edge_actor.select((graph.pairs == {sorted(cell)}).all(axis=1))"]
+        self._lines += [""]
 
     def _selection(self, name: str, layer: Layer) -> None:
         if layer.selected is None:
