@@ -307,7 +307,10 @@ class Scene:
     def _last_values(loaded: Loaded) -> str:
         """Return what to colour by of the last file of values: of labels, by the colours of their table."""
         if loaded.kind != "mesh":
-            return name_of(loaded.source.values[-1])
+            name = name_of(loaded.source.values[-1])
+            held = {**loaded.data.per_point, **loaded.data.per_streamline}
+            columns = (one for one in held if one.startswith(f"{name} "))
+            return name if name in held else next(columns, name)
         from pvfiblets.plotting.gifti import shown_array
 
         return shown_array(loaded.data, loaded.source.values[-1])

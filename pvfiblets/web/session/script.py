@@ -271,8 +271,8 @@ class _Writer(ViewWriter):
                 made = f"pvfiblets.compress(pvfiblets.read({self._file(str(source.path))}{space}){keep})"
             self._lines += [f"{name} = {made}"]
             if source.values:
-                self._imports.add("from pvfiblets.plotting.fiblets.sources import with_values_of")
-            self._lines += [f"{name} = with_values_of({name}, {self._file(path)})" for path in source.values]
+                self._imports.add("from pvfiblets.plotting.fiblets.along import with_table_of")
+            self._lines += [f"{name} = with_table_of({name}, {self._file(path)})" for path in source.values]
         return self._wholes[whole]
 
     def _filters(self, name: str, layer: Layer) -> None:
