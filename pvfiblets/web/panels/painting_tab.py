@@ -244,7 +244,9 @@ def _at_hand(app: Any) -> None:
     del app
     with html.Div(
         v_if="slicing.shown && painting.regions.length && (!right_open || tab !== 'slices')", classes="pv-paint-tools",
-        id="paint-tools",
+        id="paint-tools", style=(
+            "((view) => view ? {left: `calc(${100 * view.x}% + 60px)`, top: `calc(${100 * view.y}% + 8px)`, "
+            "maxWidth: `calc(${100 * view.w}% - 68px)`} : {})(slicing.boxes.find((box) => box.name === '3d'))",),
     ):  # fmt: skip
         html.Span(classes="pv-dot", title=("painting.active",), style=(
             "{ background: (painting.regions.find((r) => r.name === painting.active) || {}).color }",))  # fmt: skip

@@ -270,9 +270,9 @@ class Scene:
         first = layer.kind == "image" and self.slicing.workspace is None
         with self.store.with_new(loaded):
             found = self._add(layer, f"open {layer.name}")
-        if first and len(self.layers) > 1:
-            self.cameras.reset()  # an image is larger than its tracts, and its view has become smaller
-            self.plotter.camera.zoom(1.4)  # VTK has room about it for the box's corners
+        # An image is larger than its tracts, and its view has become smaller.
+        if first and len(self.layers) > 1 and not self.cameras.refit():
+            self.cameras.reset()
         return found
 
     def open(

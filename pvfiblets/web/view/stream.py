@@ -65,7 +65,7 @@ class PictureStream:
         elsewhere: Callable[[], bool] = lambda: False,
         left_out: Callable[[], Any] = lambda: None,
         pane_at: Callable[[float, float], Any] = lambda _x, _y: None,
-        resized: Callable[[], None] = lambda: None,
+        resized: Callable[[], object] = lambda: None,
     ) -> None:
         from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
