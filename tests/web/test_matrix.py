@@ -46,7 +46,7 @@ def test_a_matrix_is_computed_and_reported(desk):
     told = make(desk)
     back, front = int((parcels() == 3).sum()), int((parcels() == 5).sum())
     assert told["n"] == 2
-    assert f"{back + front} of 60 streamlines connect two" in told["said"]
+    assert told["said"].endswith(f"streamline count; {back + front} of 60 streamlines connect two labels (radius 0 mm)")
     assert desk.matrix.at(0, 0) == f"back (3) – back (3): {back} streamlines"
     assert desk.matrix.at(0, 1) == desk.matrix.at(1, 0).replace("=front (5) – back (3)", "back (3) – =front (5)")
     assert desk.matrix.at(0, 1).endswith(f": {front} streamlines")

@@ -80,7 +80,7 @@ class MatrixActions(LineActions):
         labels = [{"title": Path(str(path)).name, "value": path, "props": {"subtitle": path}} for path in paths]
         tables = [{"title": Path(path).name, "value": path} for path in self._tables]
         return {
-            "labels": labels, "names": [{"title": "numbers alone", "value": ""}, *tables],
+            "labels": labels, "names": [{"title": "none", "value": ""}, *tables],
             "weights": [{"title": "none", "value": ""}, *({"title": name, "value": name} for name in weights)],
             "contrasts": contrasts, "chosen": self._chosen(),
         }  # fmt: skip
@@ -95,6 +95,7 @@ class MatrixActions(LineActions):
             return {"n": 0, "names": [], "said": "", "low": "", "high": "", "cell": ""}
         layer = self._app.scene.layer(matrix.layer)
         weighted = f", weighted by {matrix.weights}" if matrix.weights is not None else ""
+        what = "streamline count" if found.contrast == "count" else f"{found.statistic} {found.contrast}"
         low, high = colour_range(found.matrix, matrix.log)
         connection = layer.filters.connection
         cell = ""
@@ -103,8 +104,8 @@ class MatrixActions(LineActions):
         return {
             "n": len(found.labels), "names": found.names, "low": short(low), "high": short(high),
             "log": matrix.log, "graph": matrix.graph, "threshold": f"{matrix.threshold:.6g}",
-            "said": f"{layer.name}, {Path(matrix.labels).name}: {found.statistic} of {found.contrast}{weighted}, "
-            f"within {found.radius:g} mm; {found.n_connecting:,} of {len(found.ends):,} streamlines connect two",
+            "said": f"{layer.name}, {Path(matrix.labels).name}: {what}{weighted}; {found.n_connecting:,} of "
+            f"{len(found.ends):,} streamlines connect two labels (radius {found.radius:g} mm)",
             "cell": cell, "pair": self._app.scene.matrix.cell(self._app.scene.state),
         }  # fmt: skip
 
@@ -318,11 +319,11 @@ def build(app: Any) -> None:
             html.Span("Matrix", classes="pv-name pa-0", style="flex: 1")
             ui.button("Settings", v_if="matrix.n", variant="text", click=matrix.change, data_action="matrix-settings")
             ui.button("Remove", v_if="matrix.n", variant="text", click=matrix.close, data_action="remove-matrix",
-                      title="Take the matrix away")  # fmt: skip
-            ui.icon_button("mdi-arrow-expand-horizontal", "In place of the frame, or beside it", v_if="matrix.n",
+                      title="Remove the matrix")  # fmt: skip
+            ui.icon_button("mdi-arrow-expand-horizontal", "Full width", v_if="matrix.n",
                            click="matrix_alone = !matrix_alone", data_action="matrix-alone",
                            **ui.pressed("matrix_alone", "text"))  # fmt: skip
-            ui.icon_button("mdi-close", "Fold away", data_action="fold-matrix", click=(matrix.open, "[false]"))
+            ui.icon_button("mdi-close", "Close", data_action="fold-matrix", click=(matrix.open, "[false]"))
         with html.Div(v_if="matrix.settings", id="matrix-settings"):
             _settings(matrix)
         with html.Div(v_if="matrix.n", classes="px-3"):
@@ -372,13 +373,13 @@ def build(app: Any) -> None:
 
 def _settings(matrix: MatrixActions) -> None:
     for name, label, items, hint in (
-        ("labels", "Labels", "matrix.form.labels", "A volume of whole numbers, one for each parcel"),
-        ("names", "Names", "matrix.form.names", "What labels are called: a table of FreeSurfer, ITK-SNAP or BIDS"),
-        ("contrast", "Of", "matrix.form.contrasts", "What is put together: streamlines, or their numbers"),
-        ("weights", "Weights", "matrix.form.weights", "Of streamlines, such as SIFT2's"),
+        ("labels", "Labels", "matrix.form.labels", "Label image: a number for each parcel"),
+        ("names", "Names", "matrix.form.names", "Names of the labels: a table of FreeSurfer, ITK-SNAP or BIDS"),
+        ("contrast", "Values", "matrix.form.contrasts", "Streamline count, or a measure of streamlines"),
+        ("weights", "Weights", "matrix.form.weights", "Weights of streamlines, such as SIFT2's"),
         ("statistic", "Statistic", repr([{"title": "default", "value": ""},
                                          *({"title": one, "value": one} for one in STATISTICS)]),
-         "Of a pair's numbers: the sum of counts, else the mean"),
+         "Default: the sum of counts, else the mean"),
     ):  # fmt: skip
         with ui.labelled(label, title=hint):
             ui.select(
@@ -386,7 +387,7 @@ def _settings(matrix: MatrixActions) -> None:
                 update_modelValue=(matrix.set, f"['{name}', $event]"), data_select=f"matrix-{name}",
                 style="min-width: 0",
             )  # fmt: skip
-    with ui.labelled("Radius", title="About an end, in which its parcel is looked for; 0: the voxel it lies in"):
+    with ui.labelled("Radius", title="Search radius around each end; 0: the end's voxel alone"):
         with html.Div(classes="pv-pair"):
             ui.number_field(
                 value=("matrix.form.chosen.radius",), aria_label="Radius, mm",

@@ -73,7 +73,8 @@ class SceneMatrix:
 
     def show_matrix(self, matrix: Matrix | None) -> None:
         """Show a matrix beside the picture, whose data are in the store already; None for none."""
-        self.scene.become(replace(self.scene.state, matrix=matrix), "the matrix" if matrix is not None else "no matrix")
+        what = "the matrix" if matrix is not None else "remove the matrix"
+        self.scene.become(replace(self.scene.state, matrix=matrix), what)
 
     def change(self, what: str, **changes: Any) -> None:
         """Change how the matrix is shown: ``graph``, ``threshold`` or ``log``."""
