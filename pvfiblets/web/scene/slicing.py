@@ -212,11 +212,11 @@ class Slicing:
         found = self._plotter.renderer if self.workspace is None else self._plotter.renderers[_THREE_D]
         return found if found.GetDraw() else None
 
-    def postpones_3d(self) -> bool:
-        """Keep the 3-D view as it is in the next frame if the cross-hair has moved beside it; return whether it did."""
+    def postpones_3d(self, may: bool) -> bool:
+        """Keep the 3-D view in the next frame if that may be and the cross-hair moved beside it; return whether so."""
         before, self._drawn_at = self._drawn_at, () if self.workspace is None else tuple(self.workspace.position)
         moved = () not in (before, self._drawn_at) and before != self._drawn_at
-        if not moved or not self.beside or self.view_3d is None:
+        if not (may and moved and self.beside) or self.view_3d is None:
             return False
         self.workspace.postpone(self.view_3d)
         return True
