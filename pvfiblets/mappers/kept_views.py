@@ -30,6 +30,7 @@ class KeptViews:
         self._shown: dict[str, tuple[Hashable, bool]] = {}
         self._layout: Hashable = None
         self._left: list[Any] = []
+        self._postponed: Any = None
         # how often each view was drawn, by the address of its renderer
         self.frames = {one.GetAddressAsString(""): 0 for one in self._renderers}
         self._window: Any = weak(window)
@@ -62,8 +63,12 @@ class KeptViews:
         """Draw all views in the next frame."""
         self._shown.clear()
 
+    def postpone(self, renderer: Any) -> None:
+        """Keep a view's picture in the next frame, though it has changed."""
+        self._postponed = renderer
+
     def _start(self) -> None:
-        window = self._window.Get()
+        window, postponed, self._postponed = self._window.Get(), self._postponed, None
         self._put_back()  # a frame that failed had no end
         if not self._comparable(window):
             self._shown.clear()
@@ -81,6 +86,9 @@ class KeptViews:
         for one in drawn:
             address = one.GetAddressAsString("")
             state, coarse = self._shown.get(address, (None, True))
+            if one is postponed and address in self._shown:
+                self._left.append(one)
+                continue
             if address in due or state is None or (coarse and not in_motion(one)) or state != self._state(one):
                 continue
             self._left.append(one)

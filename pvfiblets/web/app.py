@@ -95,6 +95,7 @@ class Explorer(TrameApp):
             left_out=lambda: self.browser.drawn_view(),
             pane_at=self.scene.slicing.pane_at,
             resized=self.scene.cameras.refit,
+            postpones=self.scene.slicing.postpones_3d,
         )
         self.browser = BrowserDrawing(self)
         self._charts = describe.Charts(self.scene)

@@ -212,6 +212,25 @@ def test_a_matrix_is_made_pointed_at_and_clicked(revisit, tmp_path):
     here.page.reload()
     here.ready()
     here.wait(lambda: here.state("filters")["counted"] == "16 of 60 streamlines", "the same")
+    here.page.click("[data-action=matrix]")
+    here.page.click("[data-action=matrix-graph] input")
+    here.wait(lambda: here.state("matrix")["graph"], "nodes and edges")
+    here.press("Control+z")
+    here.wait(lambda: not here.state("matrix")["graph"], "no nodes and edges")
+    here.press("Control+y")
+    here.page.click("[data-action=show-all-connections]")
+    here.page.click("[data-action=eye]")  # leaves two balls, and the edge in the middle between them
+    here.wait(lambda: here.state("matrix")["cell"] == "" and not here.state("layers")[0]["visible"], "the edge alone")
+    here.press("1")
+    here.page.click("[data-tool-button=pick]")
+    alone = here.rests()
+    down, across = np.argwhere(alone.max(axis=2) > 40).mean(axis=0) / alone.shape[:2]
+    view = here.page.locator("#pv-view").bounding_box()
+    here.page.mouse.click(view["x"] + across * view["width"], view["y"] + down * view["height"])
+    here.wait(lambda: here.state("matrix")["cell"] == "3 – 5", "the cell of the edge")
+    here.page.fill("[data-field=matrix-threshold]", "17")
+    here.press("Tab")
+    here.wait(lambda: here.state("undo_label") == "threshold of the matrix", "the threshold")
 
 
 @pytest.mark.skipif(not memory.CAN_LIMIT, reason="only Linux limits the data of a process")

@@ -303,6 +303,38 @@ def test_buttons_of_panels_are_as_wide_as_fingers(visit, size):
     assert "\n".join(wrong) == ""
 
 
+def test_tools_that_paint_leave_panes_free(visit):
+    here = visit("lines.fiblets", "--volume", "head.nii.gz", width=390, height=844, has_touch=True, is_mobile=True)
+    here.wait(lambda: here.layers() == 2, "both layers")
+    here.page.evaluate("window.trame.state.update({right_open: true, tab: 'slices'})")
+    here.page.tap("[data-action=slices-of-volume]")
+    here.page.tap("[data-action=add-painted]")
+    here.page.evaluate("window.trame.state.update({right_open: false})")
+    for layout in ("beside", "grid", "narrow"):  # panes below the 3-D view, around it, and at its right
+        if layout == "grid":
+            here.page.evaluate("window.trame.trigger('set_layout', ['grid'])")
+            here.wait(lambda: here.state("slicing")["layout"] == "grid", "the grid")
+        elif layout == "narrow":
+            here.page.evaluate("window.trame.trigger('set_layout', ['beside'])")
+            here.page.evaluate("document.querySelector('[data-action=matrix]').click()")
+            here.page.wait_for_selector("#pv-matrix")
+            here.wait(lambda: here.state("slicing")["boxes"][0]["y"] == 0.0, "panes at the right")
+        here.stands()
+        picture = here.rests()
+        strip, view = (here.page.locator(one).bounding_box() for one in ("#paint-tools", "#pv-view"))
+        boxes = {one["name"]: one for one in here.state("slicing")["boxes"]}
+        for name, box in boxes.items():
+            left, top = view["x"] + box["x"] * view["width"], view["y"] + box["y"] * view["height"]
+            across = min(strip["x"] + strip["width"], left + box["w"] * view["width"]) - max(strip["x"], left)
+            down = min(strip["y"] + strip["height"], top + box["h"] * view["height"]) - max(strip["y"], top)
+            assert (across > 1 and down > 1) is (name == "3d"), name
+        height, width = picture.shape[:2]
+        box = boxes["3d"]
+        left, right = round(box["x"] * width) + 2, round((box["x"] + box["w"]) * width) - 2
+        brain = picture[round(box["y"] * height) + 2 : round((box["y"] + box["h"]) * height) - 2]
+        assert not (brain[:, [left, right - 1]] > 40).any()
+
+
 def test_a_phone_shows_all_of_the_first_picture_and_buttons_as_wide_as_fingers(visit):
     """Of the ball, which is as wide as high."""
     import numpy as np

@@ -426,7 +426,7 @@ def test_from_a_t1_and_labels_to_an_exported_connection(revisit):
     here.press("Escape")
     here.tab("selection")
     here.page.click("[data-select=export_what] .v-field")
-    here.page.click(".v-overlay--active .v-list-item:has-text('all that filters leave')")
+    here.page.click(".v-overlay--active .v-list-item:has-text('visible streamlines')")
     here.page.fill("[data-field=export-name]", "reaching")
     here.press("Tab")
     here.wait(lambda: here.state("export_name") == "reaching", "the name")

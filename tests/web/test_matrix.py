@@ -9,9 +9,10 @@ import pytest
 from pvfiblets.query.connectome import matrix as kernels
 from pvfiblets.web.panels.matrix_panel import matrix_image
 from pvfiblets.web.scene import matrix as scene_matrix
+from pvfiblets.web.scene.matrix import colour_range
 from pvfiblets.web.session import files as session
 from pvfiblets.web.session.script import as_script
-from tests.web.desk import Desk
+from tests.web.desk import Desk, assert_script_draws
 
 
 @pytest.fixture
@@ -45,7 +46,7 @@ def test_a_matrix_is_computed_and_reported(desk):
     told = make(desk)
     back, front = int((parcels() == 3).sum()), int((parcels() == 5).sum())
     assert told["n"] == 2
-    assert f"{back + front} of 60 streamlines connect two" in told["said"]
+    assert told["said"].endswith(f"streamline count; {back + front} of 60 streamlines connect two labels (radius 0 mm)")
     assert desk.matrix.at(0, 0) == f"back (3) – back (3): {back} streamlines"
     assert desk.matrix.at(0, 1) == desk.matrix.at(1, 0).replace("=front (5) – back (3)", "back (3) – =front (5)")
     assert desk.matrix.at(0, 1).endswith(f": {front} streamlines")
@@ -133,6 +134,110 @@ def test_sessions_and_scripts_have_it(desk, folder):
     assert shown(desk) == wanted
 
 
+def edges(desk):
+    """The connectome in the 3-D view."""
+    (graph,) = desk.plotter.connectomes
+    return graph
+
+
+def centre(desk, label):
+    import nibabel
+
+    volume = nibabel.load(desk.scene.root / "atlas.nii.gz")
+    voxel = np.argwhere(np.asarray(volume.dataobj) == label).mean(axis=0)
+    return nibabel.affines.apply_affine(volume.affine, voxel)
+
+
+def test_the_matrix_is_nodes_and_edges_too(desk):
+    make(desk)
+    desk.matrix.show_graph(True)
+    graph, front = edges(desk), int((parcels() == 5).sum())
+    assert (graph.names, graph.pairs.tolist(), graph.pair_weights.tolist()) == (["back", "=front"], [[0, 1]], [front])
+    np.testing.assert_allclose(graph.positions, [centre(desk, 3), centre(desk, 5)])
+    back = int((parcels() == 3).sum())  # colours are those of the cells, the diagonal's included
+    actor = graph.edge_actor
+    assert (actor.cmap, actor.clim, actor.log_scale) == ("viridis", tuple(sorted((back, front))), True)
+    desk.matrix.set_scale(False)
+    assert (actor.clim, actor.log_scale) == ((0.0, max(back, front)), False)
+    desk.matrix.connect(0, 1)
+    assert edges(desk) is graph  # not made anew
+    assert actor.selection.tolist() == [0]
+    desk.matrix.connect(0, 1)
+    assert actor.selection.tolist() == []
+    desk.matrix.set_threshold(str(front + 1))
+    assert graph.shown.tolist() == [False]
+    desk.matrix.set_threshold(str(front))
+    assert graph.shown.tolist() == [True]
+    assert [desk.history.undo() for _ in range(2)] == ["threshold of the matrix"] * 2
+    assert graph.threshold == 0.0
+    make(desk, contrast="length", statistic="max")
+    np.testing.assert_allclose(edges(desk).pair_weights, np.arange(10, 70)[parcels() == 5].max(), atol=0.01)
+    assert edges(desk).edge_actor.log_scale is False
+    desk.matrix.show_graph(False)
+    assert not list(desk.plotter.connectomes)
+    desk.history.undo()
+    desk.scene.remove(desk.page.chosen)
+    assert not list(desk.plotter.connectomes)
+
+
+def test_cells_below_the_threshold_are_grey(desk):
+    make(desk)
+    whole = desk.page.matrix_image
+    desk.matrix.set_threshold("1e6")
+    desk.matrix.refresh()
+    assert desk.page.matrix_image == matrix_image(np.full((2, 2), np.nan), True, (1.0, 2.0)) != whole
+    for wrong, said in (("-1", "threshold"), ("many", "threshold")):
+        with pytest.raises(ValueError, match=said):
+            desk.matrix.set_threshold(wrong)
+
+
+def test_a_picked_edge_is_its_cell(desk):
+    make(desk)
+    desk.matrix.show_graph(True)
+    desk.scene.cameras.view("axial")
+
+    def pixel(place):
+        renderer = desk.plotter.renderer
+        renderer.SetWorldPoint(*place, 1.0)
+        renderer.WorldToDisplay()
+        return renderer.GetDisplayPoint()[:2]
+
+    desk.scene.cameras.screenshot()
+    between = (centre(desk, 3) + centre(desk, 5)) / 2
+    assert desk.matrix.pick(*pixel(between))
+    assert shown(desk) == np.flatnonzero(parcels() == 5).tolist()
+    assert edges(desk).edge_actor.selection.tolist() == [0]
+    assert desk.matrix.pick(*pixel(centre(desk, 3)))
+    assert desk.said[-1][1] == "back (3)"
+    assert not desk.matrix.pick(1, 1)
+    desk.matrix.show_graph(False)
+    assert not desk.matrix.pick(*pixel(between))
+
+
+def test_sessions_and_scripts_have_nodes_and_edges(desk, folder):
+    make(desk)
+    desk.matrix.show_graph(True)
+    desk.matrix.set_threshold("2,5")
+    desk.matrix.connect(0, 1)
+    state = session.to_dict(desk.scene, folder)
+    assert_script_draws(desk.scene, folder, desk.scene.cameras.screenshot())
+    session.from_dict(desk.scene, {**state, "matrix": {**state["matrix"], "graph": False}}, folder)
+    assert not list(desk.plotter.connectomes)
+    session.from_dict(desk.scene, state, folder)  # the matrix is known still
+    assert edges(desk).threshold == 2.5
+    desk.scene.remove(desk.page.chosen)
+    desk.history.clear()
+    session.from_dict(desk.scene, state, folder)
+    desk.choose(desk.scene.layers[0])
+    assert not list(desk.plotter.connectomes)
+    desk.run(desk.matrix.refresh)  # put together again, beside
+    assert edges(desk).threshold == 2.5
+    assert edges(desk).edge_actor.selection.tolist() == [0]
+    for wrong, said in (({"graph": 1}, "graph"), ({"threshold": -1}, "threshold"), ({"log": "yes"}, "log")):
+        with pytest.raises(session.SessionError, match=said):
+            session.from_dict(desk.scene, {**state, "matrix": {**state["matrix"], **wrong}}, folder)
+
+
 def test_work_is_stopped_and_not_begun_again(desk, monkeypatch):
     monkeypatch.setattr(kernels, "TOGETHER", 10)
     whole = kernels._end_points
@@ -176,8 +281,8 @@ def test_the_image_has_a_pixel_a_cell():
 
     matrix = np.array([[1.0, 10.0, np.nan], [10.0, 100.0, 0.0], [np.nan, 0.0, -5.0]])
 
-    def pixels(*given):
-        data = matrix_image(*given).removeprefix("data:image/png;base64,")
+    def pixels(matrix, log):
+        data = matrix_image(matrix, log, colour_range(matrix, log)).removeprefix("data:image/png;base64,")
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(data)))).astype(int)
 
     found = pixels(matrix, True)

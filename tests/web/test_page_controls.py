@@ -70,7 +70,7 @@ def test_streamlines_are_exported_to_this_computer_alone(visit):
     here.rests()
     before = sorted(here.served.root.iterdir())
     here.tab("selection")
-    for key, title in (("export_what", "all of the layer"), ("export_to", "this computer")):
+    for key, title in (("export_what", "all streamlines"), ("export_to", "this computer")):
         here.page.click(f"[data-select={key}] .v-field")
         here.page.click(f".v-overlay--active .v-list-item:has-text('{title}')")
     here.page.click("[data-action=export]")

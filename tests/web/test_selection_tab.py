@@ -59,7 +59,7 @@ def test_distances_stay_in_the_picture_until_they_are_removed_or_undone(desk, sc
     assert millimetres(desk) == []
     np.testing.assert_array_equal(scene.cameras.screenshot(), before)
     desk.selecting.point("measure", [share(84, 80), share(5, 5)], False)
-    assert desk.said == [("info", "There is nothing to measure at this point; choose a line, surface or slice.")]
+    assert desk.said == [("info", "Nothing to measure there; click a line, a surface or a slice.")]
     assert not amber(scene.cameras.screenshot()).any()
     desk.selecting.point("measure", [share(84, 80), share(116, 80)], False)
     scene.close()

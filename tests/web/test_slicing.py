@@ -453,3 +453,40 @@ def test_other_events_and_odd_fingers_move_nothing(looking):
     assert send(fingers, "Pinch", (50, 50), (51, 50))
     assert np.allclose(plotter.camera.position, before, atol=0.02)
     assert np.isfinite(plotter.camera.position).all()
+
+
+def shares(scene):
+    """Return how much of the 3-D view's width and height its picture takes; nothing may be at its borders."""
+    box = next(one for one in scene.slicing.boxes() if one["name"] == "3d")
+    picture = scene.cameras.screenshot()
+    height, width = picture.shape[:2]
+    left, top = round(box["x"] * width), round(box["y"] * height)
+    view = picture[top : top + round(box["h"] * height), left : left + round(box["w"] * width)]
+    lit = view[2:-2, 2:-2].max(axis=2) > 30
+    assert not lit[[0, -1]].any()
+    assert not lit[:, [0, -1]].any()
+    across, down = (np.flatnonzero(lit.any(axis=axis)) for axis in (0, 1))
+    return np.ptp(across) / lit.shape[1], np.ptp(down) / lit.shape[0]
+
+
+def test_the_3d_view_fits_windows_and_layouts_beside_slices(folder):
+    with scene_of_views(folder) as scene:
+        scene.open("lines.fiblets")
+        scene.open("head.nii.gz", "image")
+        for size in ((600, 400), (200, 400), (500, 300)):
+            scene.plotter.window_size = size
+            scene.plotter.render()
+            scene.cameras.refit()
+            for layout in ("beside", "3d", "grid"):
+                scene.images.set_slices(layout=layout)
+                assert max(shares(scene)) > 0.7
+        camera = scene.cameras.camera()
+        scene.cameras.set_camera({**camera, "position": [one + 50.0 for one in camera["position"]]})
+        moved = scene.cameras.camera()
+        scene.images.set_slices(layout="beside")  # a view that was chosen stays
+        assert scene.cameras.camera() == moved
+        scene.cameras.reset()
+        scene.plotter.window_size = 300, 500
+        scene.plotter.render()
+        scene.cameras.refit()
+        assert max(shares(scene)) > 0.5

@@ -21,6 +21,7 @@ from pvfiblets.web.view.encoding import encode
 from pvfiblets.web.view.pace import BUDGET, LEVELS, Pace
 from pvfiblets.web.view.stream import PictureStream
 
+from .desk import scene_of_views
 from .streams import Streamer, doing, drag, rests, slow_stream
 
 
@@ -106,6 +107,53 @@ def test_a_view_that_somebody_else_draws_is_left_out_until_it_is_asked_for():
     stream.settle()
     assert middles(encode(stream._read(), "png", 100)) == [(255, 0, 0)] * 2
     plotter.close()
+
+
+def test_moves_of_the_cross_hair_show_panes_first_and_the_3d_view_next(folder):
+    with scene_of_views(folder) as scene:
+        scene.open("lines.fiblets")
+        scene.open("head.nii.gz", "image")
+        scene.images.set_slices(layout="beside")
+        scene.plotter.window_size = size = 400, 240
+        stream = PictureStream(scene.plotter, "view", codec="png", postpones=scene.slicing.postpones_3d)
+        stream.update_size("", {"w": size[0], "h": size[1], "p": 1.0})
+        sent, drawn, view = [], [], scene.slicing.view_3d
+        view.AddObserver("StartEvent", lambda *_: drawn.append(len(sent)))
+
+        class Taking(Streamer):
+            def push_content(self, name, meta, content):
+                sent.append(np.asarray(Image.open(io.BytesIO(content))))
+
+        async def run():
+            stream.set_streamer(Taking())
+            stream.request()
+            await rests(stream)
+            first = len(sent)
+            drawn.clear()
+            x, y, z = scene.slicing.workspace.position
+            scene.slicing.workspace.position = x + 12.0, y - 8.0, z + 12.0
+            stream.request()
+            await rests(stream)
+            moved = len(sent)
+            scene.slicing.workspace.position = x, y, z
+            stream.hasten()  # as clicks in panes do
+            await rests(stream)
+            np.testing.assert_array_equal(sent[-1], sent[first - 1])
+            del sent[moved:]
+            await stream.close()
+            return first
+
+        first = asyncio.run(run())
+        before, panes, whole = sent[first - 1], sent[first], sent[-1]
+        assert first not in drawn  # no 3-D view was drawn for the panes
+        box = next(one for one in scene.slicing.boxes() if one["name"] == "3d")
+        in_3d = np.zeros(size[::-1], bool)
+        in_3d[round(box["y"] * size[1]) : round((box["y"] + box["h"]) * size[1]),
+              round(box["x"] * size[0]) : round((box["x"] + box["w"]) * size[0])] = True  # fmt: skip
+        np.testing.assert_array_equal(panes[in_3d], before[in_3d])
+        np.testing.assert_array_equal(panes[~in_3d], whole[~in_3d])
+        assert (panes[~in_3d] != before[~in_3d]).any()
+        assert (whole[in_3d] != before[in_3d]).any()
 
 
 def test_slow_scenes_have_fewer_pixels_while_the_camera_moves_and_all_at_rest(plotter):

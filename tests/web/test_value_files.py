@@ -19,7 +19,7 @@ from pvfiblets.web.session.document import Source
 from pvfiblets.web.session.history import History
 from pvfiblets.web.session.script import as_script
 from tests.web.conftest import look_down
-from tests.web.desk import Desk, scene_of_views
+from tests.web.desk import Desk, assert_script_draws, scene_of_views
 
 
 @pytest.fixture
@@ -118,13 +118,95 @@ def test_values_of_other_lines_change_nothing(desk, scene, folder, lines):
         with pytest.raises(ValueError, match=says):
             await desk.files.open("part.tsf")
 
-    asyncio.run(test("part.tsf holds values for the points of a tractogram; open that first"))
+    asyncio.run(test("part.tsf holds values for a tractogram; open that first"))
     layer = scene.open("lines.trk")
     asyncio.run(test("50 streamlines.*60 as the tractogram has"))
     assert scene.layers == (layer,)
     with pytest.raises(FormatError):
         scene.load_values(layer.id, "part.tsf")
     assert pvfiblets.read(folder / "lines.trk").n_points == lines.n_points
+
+
+def along(lines, values, chosen=slice(None)):
+    """Return values at positions of equal length along straight lines, linear between them."""
+    found = np.full(lines.n_points, np.nan)
+    for line in np.arange(len(lines))[chosen]:
+        part = slice(*lines.offsets[line : line + 2])
+        x = np.asarray(lines.points[part, 0], float)
+        found[part] = np.interp(x / x[-1], np.linspace(0.0, 1.0, len(values)), values)
+    return found
+
+
+def held(scene, layer, name):
+    return scene.actor(layer.id).fiblets.decompress().per_point[name].ravel()
+
+
+@pytest.mark.parametrize("name", ["effect.csv", "effect.txt", "effect.npy", "effect.tsv"])
+async def test_values_of_positions_colour_along_the_bundle(desk, scene, folder, lines, name):
+    values = np.array([0.5, 2.0, -1.0, 4.0, 3.0])
+    if name.endswith(".npy"):
+        np.save(folder / name, values)
+    else:
+        (folder / name).write_text("mean\n" * name.endswith(".tsv") + "".join(f"{value}\n" for value in values))
+    layer = scene.open("lines.trk")
+    desk.choose(layer)
+    desk.files.browse("")
+    assert name in {entry["name"] for entry in desk.page.entries}
+    desk.files.take(name, False)
+    await desk.done()
+    assert scene.layer(layer.id).settings["scalars"] == "effect"
+    np.testing.assert_allclose(held(scene, layer, "effect"), along(lines, values), atol=0.02)
+    choices = next(one for one in scene.queries.properties(layer.id) if one["name"] == "scalars")["choices"]
+    assert "effect" in {choice["value"] for choice in choices}
+    assert desk.history.undo() == f"values effect of {layer.name}"
+    assert scene.layer(layer.id).source.values == ()
+
+
+STATS = "bundle,value,position,mean,p\nnear,fa,0,1,\nnear,fa,1,3,0.5\nfar,fa,0,5,0.1\nfar,fa,1,4,0.2\nlost,fa,0,9,9\n"
+
+
+def test_a_table_of_bundles_colours_each_along_itself(scene, folder, lines):
+    (folder / "stats.csv").write_text(STATS)
+    layer = scene.open("lines.fiblets")
+    scene.attach(layer.id, scene.load_values(layer.id, "stats.csv"))
+    assert scene.layer(layer.id).settings["scalars"] == "stats"
+    near, far = slice(0, 30), slice(30, 60)
+    both = np.fmax(along(lines, [1.0, 3.0], near), along(lines, [5.0, 4.0], far))
+    np.testing.assert_allclose(held(scene, layer, "stats"), both, atol=0.02)
+    found = held(scene, layer, "stats p")
+    share = along(lines, [0.0, 1.0])
+    half = (share > 0.5) & (np.arange(lines.n_points) < lines.offsets[30])  # nearest to a position with a value
+    np.testing.assert_allclose(found[half], 0.5, atol=0.02)
+    assert np.isnan(found[: lines.offsets[30]][share[: lines.offsets[30]] < 0.5]).all()
+    (folder / "p.csv").write_text(STATS.replace("mean", "effect"))
+    scene.attach(layer.id, scene.load_values(layer.id, "p.csv"))
+    assert scene.layer(layer.id).settings["scalars"] == "p effect"
+    state = session.to_dict(scene)
+    assert state["layers"][0]["source"]["values"] == ["stats.csv", "p.csv"]
+    scene.remove(layer.id)
+    scene.forget_unused()
+    session.from_dict(scene, state)
+    assert scene.layers[0].settings["scalars"] == "p effect"
+
+
+def test_tables_that_fit_nothing_say_why(scene, folder):
+    layer = scene.open("lines.fiblets")
+    for text, said in (
+        ("bundle,mean\na,1\na,2\nb,1\n", "profiles of a, b"), ("mean\nhigh\nlow\n", "no numbers"),
+        ("1\n" * 1500, "60 rows"), ("1\n", "60 rows"), ("", "60 rows"), ("mean\n1,2\n", "1 cells"),
+    ):  # fmt: skip
+        (folder / "odd.csv").write_text(text)
+        with pytest.raises((ValueError, FormatError), match=said):
+            scene.load_values(layer.id, "odd.csv")
+    assert scene.layers == (layer,)
+
+
+@pytest.mark.usefixtures("usual_limits")  # which the script has
+def test_scripts_colour_along_too(scene, folder):
+    (folder / "stats.csv").write_text(STATS)
+    layer = scene.open("lines.fiblets")
+    scene.attach(layer.id, scene.load_values(layer.id, "stats.csv"))
+    assert_script_draws(scene, folder, scene.cameras.screenshot())
 
 
 HEAD = {"volume": {"path": "head.nii.gz"}}

@@ -8,14 +8,45 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pvfiblets.codec.point_arrays import with_point_values
+from pvfiblets.errors import FormatError
 from pvfiblets.formats.attachments import name_of
+from pvfiblets.formats.registry import UnknownFormatError
 from pvfiblets.images.sources import is_image
-from pvfiblets.query.bundles.along import TABLES, read_profile, values_along
+from pvfiblets.plotting.fiblets.sources import with_values_of
+from pvfiblets.query.bundles.along import TABLES, read_columns, read_profile, values_along
 from pvfiblets.query.bundles.tract_profile import tract_profile
 from pvfiblets.support.real_numbers import real_numbers
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
+
+MOST_POSITIONS = 1000  # a longer column is of other streamlines
+
+
+def with_table_of(fiblets: FibletSet, path: str | os.PathLike[str]) -> FibletSet:
+    """Return a set with the values of a file more: of its points, its streamlines, or positions along its bundles."""
+    try:
+        return with_values_of(fiblets, path)
+    except (FormatError, UnknownFormatError):
+        if not os.fspath(path).lower().endswith(TABLES):
+            raise
+        columns, bundles = read_columns(path)
+        numbers = () if columns else read_profile(path)[0]
+        if not columns and not 2 <= len(numbers) <= MOST_POSITIONS:
+            raise
+    groups = [name for name in bundles if name in fiblets.groups]
+    if len(bundles) > 1 and not groups:
+        raise ValueError(f"{path} has profiles of {', '.join(bundles)}; the tractogram has no groups of these names")
+    for column in columns or ("mean",):
+        values = np.full(fiblets.n_points, np.nan)
+        for group in groups or (None,):
+            along, core = read_profile(path, column, group)
+            found = values_along(fiblets, slice(None) if group is None else group, along, orient_by=core)
+            values = np.where(np.isnan(found), values, found)
+        name = name_of(path) if column == "mean" else f"{name_of(path)} {column}"
+        fiblets = with_point_values(fiblets, name, values, bits=16)
+    return fiblets
 
 
 def along_bundle(

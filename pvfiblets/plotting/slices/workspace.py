@@ -216,6 +216,11 @@ class Workspace:
         layout = "beside" if self._layout == OBLIQUE and not there else self._layout
         return viewports(layout, width / max(height, 1), oblique=there)
 
+    def postpone(self, renderer: Any) -> None:
+        """Keep a view's picture in the next frame, though it has changed."""
+        if self._kept is not None:
+            self._kept.postpone(renderer)
+
     def arrange(self, *_: Any) -> None:
         """Lay views out as it suits the window, which may have another shape now."""
         places = self._places

@@ -23,10 +23,11 @@ from .tract_profile import as_line, bundle_lines, resampled_lines, runs_backward
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["TABLES", "read_profile", "values_along"]
+__all__ = ["TABLES", "read_columns", "read_profile", "values_along"]
 
 Floats = npt.NDArray[np.float64]
 TABLES = (".csv", ".tsv", ".txt", ".npy")
+PLACES = ("bundle", "position", "share_of_length", "x", "y", "z")  # columns that say where values are
 CHUNK = 1 << 20  # points decoded, or places resampled, together
 
 
@@ -87,15 +88,9 @@ def read_profile(
 ) -> tuple[Floats, Floats | None]:
     """Read the numbers of a bundle's positions, and the positions from the columns x, y, z if a table has them."""
     where = Path(path).expanduser()
-    if where.suffix.lower() == ".npy":
+    names, rows = _table(where)
+    if not names:
         return read_values(where).astype(np.float64), None
-    with where.open(newline="") as file:
-        rows = [row for row in csv.reader(file, delimiter="\t" if where.suffix.lower() == ".tsv" else ",") if row]
-    if all(_is_number(word) for cell in (rows[0] if rows else []) for word in cell.split()):
-        return read_values(where).astype(np.float64), None
-    names, rows = rows[0], rows[1:]
-    if ragged := next((row for row in rows if len(row) != len(names)), None):
-        raise FormatError(where, None, f"the row {ragged}", f"{len(names)} cells in each row, as in the first")
     if column not in names:
         raise KeyError(f"{where} has no column {column!r}; it has: {', '.join(names)}")
     if "bundle" in names:
@@ -110,6 +105,32 @@ def read_profile(
         raise FormatError(where, None, f"the cell {wrong!r}", f"numbers in the columns {', '.join(wanted)}")
     values, *core = (np.array(found, np.float64) for found in cells)
     return values, np.stack(core, axis=1) if len(core) == 3 and np.isfinite(core).all() else None
+
+
+def read_columns(path: str | os.PathLike[str]) -> tuple[list[str], list[str]]:
+    """Read the names of a table's columns of values, and of its bundles; nothing of numbers without a head."""
+    where = Path(path).expanduser()
+    names, rows = _table(where)
+    cells = dict(zip(names, zip(*rows, strict=True), strict=True)) if rows else {}
+    numbers = [name for name, column in cells.items() if all(map(_is_number, filter(None, column)))]
+    found = [name for name in numbers if name not in PLACES]
+    if names and not found:
+        raise FormatError(where, None, f"no numbers in the columns {', '.join(names)}", "a column of values")
+    return found, list(dict.fromkeys(cells.get("bundle", ())))
+
+
+def _table(where: Path) -> tuple[list[str], list[list[str]]]:
+    """Return names of a table's columns, and its rows; nothing of numbers without a head."""
+    if where.suffix.lower() == ".npy":
+        return [], []
+    with where.open(newline="") as file:
+        rows = [row for row in csv.reader(file, delimiter="\t" if where.suffix.lower() == ".tsv" else ",") if row]
+    if all(_is_number(word) for cell in (rows[0] if rows else []) for word in cell.split()):
+        return [], []
+    names, rows = rows[0], rows[1:]
+    if ragged := next((row for row in rows if len(row) != len(names)), None):
+        raise FormatError(where, None, f"the row {ragged}", f"{len(names)} cells in each row, as in the first")
+    return names, rows
 
 
 def _is_number(text: str) -> bool:

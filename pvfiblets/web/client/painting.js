@@ -97,7 +97,7 @@
   window.addEventListener("keydown", (event) => {
     const tool = KEYS[event.key.toLowerCase()], state = window.trame?.state;
     if (!tool || event.ctrlKey || event.metaKey || event.altKey || state?.get("dialog")) return;
-    if (event.target.closest?.("input:not([type=color]), textarea, select, [contenteditable], [role=listbox]")) return;
+    if (event.target.closest?.("input:not([type=color], [type=checkbox]), textarea, select, [contenteditable], [role=listbox]")) return;
     if (!state?.get("slicing")?.shown || !state.get("painting")?.regions.length) return;
     set("tool", tool);
     event.preventDefault();

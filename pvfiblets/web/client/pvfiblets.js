@@ -78,7 +78,7 @@
   const taken = (target, key) => {
     if (target.closest?.(".v-select input[aria-expanded=false]")) return /^(arrow|enter$| $|tab$)/.test(key);
     if (target.closest?.("[role=slider]")) return /^(arrow|home$|end$|page|tab$)/.test(key);
-    return Boolean(target.closest?.("input:not([type=color]), textarea, select, [contenteditable], [role=listbox]"));
+    return Boolean(target.closest?.("input:not([type=color], [type=checkbox]), textarea, select, [contenteditable], [role=listbox]"));
   };
 
   window.addEventListener("keydown", (event) => {

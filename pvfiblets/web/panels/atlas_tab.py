@@ -164,7 +164,7 @@ class AtlasActions(Actions):
         app.scene.images.set_slices(position=[float(part) for part in position])
         label = app.scene.actor(image.id).value_at(position)
         if not label:
-            app.say("There is no label there.")
+            app.say("No label there.")
             return
         self.ask(int(label))
 

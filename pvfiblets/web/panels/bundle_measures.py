@@ -231,7 +231,7 @@ def build(app: Any) -> None:
     fold("Measure", "measures.open", size="small", click=(measuring.fold, "[!measures.open]"),
          data_action="measure-bundles")  # fmt: skip
     with html.Div(v_if="measures.open", id="measures"):
-        html.Div("Of the bundles chosen by boxes, or of all that are shown.", classes="pv-small px-3 pb-1")
+        html.Div("For the ticked bundles, or all visible ones.", classes="pv-small px-3 pb-1")
         with ui.labelled("Profile of"), html.Div(classes="pv-pair"):
             ui.select(
                 items=("measures.values",), model_value=("measures.value",),

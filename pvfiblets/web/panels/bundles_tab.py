@@ -177,7 +177,8 @@ def build(app: Any) -> None:
             with html.Div(classes="pv-pair px-2 pt-1"):
                 eye("bundles.all", "Hide all", "Show all", click=(bundles.show_all, "[!bundles.all]"),
                     data_action="all-bundles")  # fmt: skip
-                html.Span("{{ bundles.count }} bundles", classes="pv-small", style="flex: 1")
+                html.Span("{{ bundles.count }} bundle{{ bundles.count === 1 ? '' : 's' }}", classes="pv-small",
+                          style="flex: 1")  # fmt: skip
                 ui.button(
                     "Colour by bundle", data_action="colour-by-bundle", click=(bundles.colour, "[!bundles.coloured]"),
                     **ui.pressed("bundles.coloured"),

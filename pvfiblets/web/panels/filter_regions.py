@@ -182,7 +182,7 @@ class RegionActions(LineActions):
         with hidden_distances(app.plotter):
             found = app.scene.cameras.place_at(x, y, tolerance=NEAR)
         if found is None:
-            app.say("No object there; click on a streamline, a slice or a surface.")
+            app.say("Nothing there; click a streamline, a slice or a surface.")
             return
 
         def change(region: Row) -> Row:

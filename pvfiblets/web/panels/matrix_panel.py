@@ -21,17 +21,16 @@ from pvfiblets.web.panels.elements import html, v3
 from pvfiblets.web.scene.file_kinds import TABLES
 from pvfiblets.web.scene.label_images import BESIDE
 from pvfiblets.web.scene.loading import Cancelled
-from pvfiblets.web.scene.matrix import choices
+from pvfiblets.web.scene.matrix import COLOURS, choices, colour_range
 from pvfiblets.web.session.document import LINES, Matrix
+from pvfiblets.web.values import number
 
 if TYPE_CHECKING:
     from pvfiblets.query.connectome.matrix import Connectome
 
 __all__ = ["MatrixActions", "build", "matrix_image"]
 
-KEPT = 4  # matrices that undo finds without work
 LISTED = 200  # files that may be labels, or their names
-COLOURS = "inferno"
 
 
 class MatrixActions(LineActions):
@@ -44,10 +43,8 @@ class MatrixActions(LineActions):
         self._form: dict[str, Any] = {}
         self._volumes: list[str] = []
         self._tables: list[str] = []
-        self._found: list[tuple[Matrix, Any, Connectome]] = []
         self._pending: Matrix | None = None
         self._failed: Matrix | None = None
-        self._logarithmic = True
         self._drawn: tuple[Any, ...] = ()
 
     # What is shown
@@ -56,23 +53,21 @@ class MatrixActions(LineActions):
         """Show the matrix of the document; one that is not known yet, as of a session, is put together."""
         page, scene = self._app.page, self._app.scene
         matrix = scene.state.matrix
-        found = self._connectome(matrix)
+        found = scene.matrix.connectome(scene.state)
         if matrix is None:
             self._failed = None
-        elif found is None and self._pending is None and matrix != self._failed:
+        elif found is None and self._pending is None and matrix.bare != self._failed:
             self._open = True
             self._begin(matrix)
         page.matrix = {
             "open": self._open and bool(scene.layers), "settings": self._settings or found is None,
             "form": self._described(), **self._told(matrix, found),
         }  # fmt: skip
-        self._draw(found)
+        self._draw(matrix, found)
 
-    def _connectome(self, matrix: Matrix | None) -> Connectome | None:
-        if matrix is None:
-            return None
-        fiblets = self._app.scene.actor(matrix.layer).fiblets
-        return next((one for of, data, one in self._found if of == matrix and data is fiblets), None)
+    @property
+    def _connectome(self) -> Connectome | None:
+        return self._app.scene.matrix.connectome(self._app.scene.state)
 
     def _described(self) -> dict[str, Any]:
         """Return what there is to choose."""
@@ -85,7 +80,7 @@ class MatrixActions(LineActions):
         labels = [{"title": Path(str(path)).name, "value": path, "props": {"subtitle": path}} for path in paths]
         tables = [{"title": Path(path).name, "value": path} for path in self._tables]
         return {
-            "labels": labels, "names": [{"title": "numbers alone", "value": ""}, *tables],
+            "labels": labels, "names": [{"title": "none", "value": ""}, *tables],
             "weights": [{"title": "none", "value": ""}, *({"title": name, "value": name} for name in weights)],
             "contrasts": contrasts, "chosen": self._chosen(),
         }  # fmt: skip
@@ -97,41 +92,41 @@ class MatrixActions(LineActions):
     def _told(self, matrix: Matrix | None, found: Connectome | None) -> dict[str, Any]:
         """Return the description of the matrix."""
         if matrix is None or found is None:
-            return {"n": 0, "names": [], "said": "", "low": "", "high": "", "log": self._logarithmic, "cell": ""}
+            return {"n": 0, "names": [], "said": "", "low": "", "high": "", "cell": ""}
         layer = self._app.scene.layer(matrix.layer)
         weighted = f", weighted by {matrix.weights}" if matrix.weights is not None else ""
-        low, high = _range(found.matrix, self._logarithmic)
+        what = "streamline count" if found.contrast == "count" else f"{found.statistic} {found.contrast}"
+        low, high = colour_range(found.matrix, matrix.log)
         connection = layer.filters.connection
         cell = ""
         if connection is not None:
             cell = " – ".join(self._name(found, label) for label in connection["pair"])
         return {
-            "n": len(found.labels), "names": found.names,
-            "log": self._logarithmic, "low": short(low), "high": short(high),
-            "said": f"{layer.name}, {Path(matrix.labels).name}: {found.statistic} of {found.contrast}{weighted}, "
-            f"within {found.radius:g} mm; {found.n_connecting:,} of {len(found.ends):,} streamlines connect two",
-            "cell": cell, "pair": [] if connection is None else self._places(found, connection["pair"]),
+            "n": len(found.labels), "names": found.names, "low": short(low), "high": short(high),
+            "log": matrix.log, "graph": matrix.graph, "threshold": f"{matrix.threshold:.6g}",
+            "said": f"{layer.name}, {Path(matrix.labels).name}: {what}{weighted}; {found.n_connecting:,} of "
+            f"{len(found.ends):,} streamlines connect two labels (radius {found.radius:g} mm)",
+            "cell": cell, "pair": self._app.scene.matrix.cell(self._app.scene.state),
         }  # fmt: skip
 
     def _name(self, found: Connectome, label: int) -> str:
         at = np.flatnonzero(found.labels == label)
         return found.names[int(at[0])] if len(at) else str(label)
 
-    def _places(self, found: Connectome, pair: Any) -> list[int]:
-        places = [np.flatnonzero(found.labels == label) for label in pair]
-        return [int(place[0]) for place in places] if all(map(len, places)) else []
-
-    def _draw(self, found: Connectome | None) -> None:
+    def _draw(self, matrix: Matrix | None, found: Connectome | None) -> None:
         """Send the image, if it is another one."""
-        drawn = (found, self._logarithmic)
+        drawn = () if matrix is None or found is None else (found, matrix.threshold, matrix.log)
         if drawn == self._drawn:
             return
-        self._drawn = drawn
-        self._app.page.matrix_image = "" if found is None else matrix_image(found.matrix, self._logarithmic)
+        self._drawn, image = drawn, ""
+        if matrix is not None and found is not None:
+            strong = np.where(abs(found.matrix) >= matrix.threshold, found.matrix, np.nan)
+            image = matrix_image(strong, matrix.log, colour_range(found.matrix, matrix.log))
+        self._app.page.matrix_image = image
 
     def at(self, row: Any, column: Any) -> str:
         """Return the text of a cell, for the pointer."""
-        found = self._connectome(self._app.scene.state.matrix)
+        found = self._connectome
         if found is None:
             return ""
         i, j = _cell(found, row, column)
@@ -183,8 +178,28 @@ class MatrixActions(LineActions):
 
     def set_scale(self, logarithmic: bool) -> None:
         """Draw colours by logarithms, or as numbers are."""
-        self._logarithmic = logarithmic is True
-        self._show()
+        self._app.scene.matrix.change("colours of the matrix", log=logarithmic is True)
+
+    def show_graph(self, graph: bool) -> None:
+        """Show nodes and edges in the 3-D view, or no longer."""
+        what = "show nodes and edges" if graph is True else "hide nodes and edges"
+        self._app.scene.matrix.change(what, graph=graph is True)
+
+    def set_threshold(self, given: str) -> None:
+        """Leave weaker connections out."""
+        threshold = number(typed(given, "threshold", optional=False), "threshold", 0.0)
+        self._app.scene.matrix.change("threshold of the matrix", threshold=threshold)
+
+    def pick(self, x: float, y: float) -> bool:
+        """Show the streamlines of the edge at a pixel, or name the node; return whether there is one."""
+        picked = self._app.scene.matrix.pick_at(x, y)
+        if picked is None or (found := self._connectome) is None:
+            return False
+        if len(picked.nodes) == 2:
+            self.connect(*picked.nodes)
+        else:
+            self._app.say(self._label(found, picked.nodes[0]))
+        return True
 
     def make(self) -> None:
         """Put the matrix together, beside everything else."""
@@ -194,9 +209,12 @@ class MatrixActions(LineActions):
         wanted: dict[str, Any] = {name: chosen[name] or None for name in ("names", "weights", "statistic")}
         wanted |= {"layer": self._layer.id, "labels": chosen["labels"], "contrast": chosen["contrast"]}
         wanted["radius"] = typed(str(chosen["radius"]), "radius", optional=False)
-        matrix = self._app.scene.matrix.prepare_matrix(**wanted)
-        if self._connectome(matrix) is not None:
-            self._app.scene.matrix.show_matrix(matrix)
+        before, scene = self._app.scene.state.matrix, self._app.scene
+        if before is not None:  # a threshold of other numbers means nothing
+            wanted |= {"graph": before.graph, "log": before.log}
+        matrix = scene.matrix.prepare_matrix(**wanted)
+        if scene.store.connectome(scene.data(self._layer).data, matrix) is not None:
+            scene.matrix.show_matrix(matrix)
         else:
             self._begin(matrix)
 
@@ -206,31 +224,27 @@ class MatrixActions(LineActions):
 
     async def _make(self, matrix: Matrix) -> None:
         app, scene = self._app, self._app.scene
-        fiblets = scene.actor(matrix.layer).fiblets
         try:
-            store, found = await app.files.run_in_background(
+            store = await app.files.run_in_background(
                 Path(matrix.labels).name, lambda progress, cancel: scene.matrix.load_matrix(matrix, progress, cancel),
                 "connecting parcels",
             )  # fmt: skip
         except BaseException as error:
-            self._failed = matrix
+            self._failed = matrix.bare
             if not isinstance(error, Cancelled):
                 raise
             app.say("The matrix was not made: cancelled.")
             return
         finally:
             self._pending = None
-        self._found = [*self._found[1 - KEPT :], (matrix, fiblets, found)]
         self._settings, self._failed = False, None
-        scene.store.take(store)
-        scene.matrix.show_matrix(matrix)
+        scene.matrix.take_matrix(matrix, store)
         self._show()
 
     def connect(self, row: Any, column: Any) -> None:
         """Show only the streamlines of a cell; again, show all."""
         scene = self._app.scene
-        matrix = scene.state.matrix
-        found = self._connectome(matrix)
+        matrix, found = scene.state.matrix, self._connectome
         if matrix is None or found is None:
             raise ValueError("there is no matrix; make one first")
         i, j = _cell(found, row, column)
@@ -255,7 +269,7 @@ class MatrixActions(LineActions):
 
     def fetch(self, suffix: str) -> str | bytes:
         """Return the matrix as a file, for the browser to save."""
-        found = self._connectome(self._app.scene.state.matrix)
+        found = self._connectome
         if found is None:
             raise ValueError("there is no matrix; make one first")
         if suffix not in SUFFIXES:
@@ -276,25 +290,18 @@ def _cell(found: Connectome, row: Any, column: Any) -> tuple[int, int]:
     return row, column
 
 
-def _range(matrix: np.ndarray, logarithmic: bool) -> tuple[float, float]:
-    """Return the values that the ends of the colours stand for."""
-    known = matrix[np.isfinite(matrix)]
-    some = known[known > 0.0] if logarithmic else known
-    return (float(some.min()), float(some.max())) if len(some) else (0.0, 0.0)
-
-
-def matrix_image(matrix: np.ndarray, logarithmic: bool) -> str:
+def matrix_image(matrix: np.ndarray, logarithmic: bool, ends: tuple[float, float]) -> str:
     """Return a matrix as the address of a PNG: a pixel a cell, grey where there is no number, or none above 0."""
     import matplotlib as mpl
     from PIL import Image
 
-    low, high = _range(matrix, logarithmic)
+    low, high = ends
     with np.errstate(divide="ignore", invalid="ignore"):
         values = np.log(matrix) if logarithmic else matrix
         first, last = (np.log(low), np.log(high)) if logarithmic else (low, high)
         share = np.clip((values - first) / (last - first), 0.0, 1.0) if last > first else np.ones(matrix.shape)
     known = np.isfinite(values)
-    colours = np.asarray(mpl.colormaps[COLOURS](np.where(known, 0.12 + 0.88 * share, 0.0), bytes=True))[..., :3]
+    colours = np.asarray(mpl.colormaps[COLOURS](np.where(known, share, 0.0), bytes=True))[..., :3]
     colours[~known] = 38
     file = io.BytesIO()
     Image.fromarray(np.ascontiguousarray(colours)).save(file, "png")
@@ -312,11 +319,11 @@ def build(app: Any) -> None:
             html.Span("Matrix", classes="pv-name pa-0", style="flex: 1")
             ui.button("Settings", v_if="matrix.n", variant="text", click=matrix.change, data_action="matrix-settings")
             ui.button("Remove", v_if="matrix.n", variant="text", click=matrix.close, data_action="remove-matrix",
-                      title="Take the matrix away")  # fmt: skip
-            ui.icon_button("mdi-arrow-expand-horizontal", "In place of the frame, or beside it", v_if="matrix.n",
+                      title="Remove the matrix")  # fmt: skip
+            ui.icon_button("mdi-arrow-expand-horizontal", "Full width", v_if="matrix.n",
                            click="matrix_alone = !matrix_alone", data_action="matrix-alone",
                            **ui.pressed("matrix_alone", "text"))  # fmt: skip
-            ui.icon_button("mdi-close", "Fold away", data_action="fold-matrix", click=(matrix.open, "[false]"))
+            ui.icon_button("mdi-close", "Close", data_action="fold-matrix", click=(matrix.open, "[false]"))
         with html.Div(v_if="matrix.settings", id="matrix-settings"):
             _settings(matrix)
         with html.Div(v_if="matrix.n", classes="px-3"):
@@ -339,11 +346,19 @@ def build(app: Any) -> None:
             with html.Div(classes="pv-pair pv-small"):
                 html.Span("{{ matrix.low }}")
                 html.Div(style="flex: 1; height: 10px; border-radius: 2px; background: linear-gradient(90deg, "
-                         "#140b34, #550f6d, #981d69, #d24644, #f8870e, #fcffa4)")  # fmt: skip
+                         "#440154, #414487, #2a788e, #22a884, #7ad151, #fde725)")  # fmt: skip
                 html.Span("{{ matrix.high }}")
                 ui.button(
                     "log", variant=("matrix.log ? 'flat' : 'tonal'",), click=(matrix.set_scale, "[!matrix.log]"),
                     title="Colours by logarithms", data_action="matrix-log",
+                )  # fmt: skip
+            with ui.labelled("Nodes and edges", title="Show the matrix in the 3-D view"):
+                ui.switch(model_value=("matrix.graph",), update_modelValue=(matrix.show_graph, "[!!$event]"),
+                          aria_label="Nodes and edges", data_action="matrix-graph")  # fmt: skip
+            with ui.labelled("Threshold", title="Weaker connections are hidden"):
+                ui.number_field(
+                    value=("matrix.threshold",), change=(matrix.set_threshold, "[$event.target.value]"),
+                    aria_label="Threshold", data_field="matrix-threshold", style="width: 74px",
                 )  # fmt: skip
             with html.Div(classes="py-2", style="display: flex; gap: 4px"):
                 for suffix in SUFFIXES:
@@ -358,13 +373,13 @@ def build(app: Any) -> None:
 
 def _settings(matrix: MatrixActions) -> None:
     for name, label, items, hint in (
-        ("labels", "Labels", "matrix.form.labels", "A volume of whole numbers, one for each parcel"),
-        ("names", "Names", "matrix.form.names", "What labels are called: a table of FreeSurfer, ITK-SNAP or BIDS"),
-        ("contrast", "Of", "matrix.form.contrasts", "What is put together: streamlines, or their numbers"),
-        ("weights", "Weights", "matrix.form.weights", "Of streamlines, such as SIFT2's"),
+        ("labels", "Labels", "matrix.form.labels", "Label image: a number for each parcel"),
+        ("names", "Names", "matrix.form.names", "Names of the labels: a table of FreeSurfer, ITK-SNAP or BIDS"),
+        ("contrast", "Values", "matrix.form.contrasts", "Streamline count, or a measure of streamlines"),
+        ("weights", "Weights", "matrix.form.weights", "Weights of streamlines, such as SIFT2's"),
         ("statistic", "Statistic", repr([{"title": "default", "value": ""},
                                          *({"title": one, "value": one} for one in STATISTICS)]),
-         "Of a pair's numbers: the sum of counts, else the mean"),
+         "Default: the sum of counts, else the mean"),
     ):  # fmt: skip
         with ui.labelled(label, title=hint):
             ui.select(
@@ -372,7 +387,7 @@ def _settings(matrix: MatrixActions) -> None:
                 update_modelValue=(matrix.set, f"['{name}', $event]"), data_select=f"matrix-{name}",
                 style="min-width: 0",
             )  # fmt: skip
-    with ui.labelled("Radius", title="About an end, in which its parcel is looked for; 0: the voxel it lies in"):
+    with ui.labelled("Radius", title="Search radius around each end; 0: the end's voxel alone"):
         with html.Div(classes="pv-pair"):
             ui.number_field(
                 value=("matrix.form.chosen.radius",), aria_label="Radius, mm",

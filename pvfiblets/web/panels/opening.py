@@ -111,10 +111,10 @@ class FileActions(SessionActions):
         """Colour the chosen tractogram or mesh by a file of values, which is read beside everything else."""
         app = self._app
         name = Path(path).name
-        kinds, of = (("mesh",), "vertices of a surface") if _of_vertices(path) else (LINES, "points of a tractogram")
+        kinds, of = (("mesh",), "the vertices of a surface") if _of_vertices(path) else (LINES, "a tractogram")
         lines = [layer.id for layer in app.scene.layers if layer.kind in kinds]
         if not lines:
-            raise ValueError(f"{name} holds values for the {of}; open that first")
+            raise ValueError(f"{name} holds values for {of}; open that first")
         target = app.page.chosen if app.page.chosen in lines else lines[-1]
         try:
             loaded = await self.run_in_background(

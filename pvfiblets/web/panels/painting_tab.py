@@ -141,7 +141,7 @@ class PaintActions(Actions):
         app.confined.writable(name, SUFFIXES)
         app.confined.writable(stem + ".tsv", (".tsv",))
         app.scene.painting.save_painting(name)
-        app.say(f"saved as {name}, with the names of its labels in {stem}.tsv", "success")
+        app.say(f"Saved as {name}; label names are in {stem}.tsv.", "success")
 
     @property
     def _painting(self) -> Any:
@@ -242,7 +242,9 @@ def _at_hand(app: Any) -> None:
     del app
     with html.Div(
         v_if="slicing.shown && painting.regions.length && (!right_open || tab !== 'slices')", classes="pv-paint-tools",
-        id="paint-tools",
+        id="paint-tools", style=(
+            "((view) => view ? {left: `calc(${100 * view.x}% + 60px)`, top: `calc(${100 * view.y}% + 8px)`, "
+            "maxWidth: `calc(${100 * view.w}% - 68px)`} : {})(slicing.boxes.find((box) => box.name === '3d'))",),
     ):  # fmt: skip
         html.Span(classes="pv-dot", title=("painting.active",), style=(
             "{ background: (painting.regions.find((r) => r.name === painting.active) || {}).color }",))  # fmt: skip
@@ -264,7 +266,7 @@ def build(app: Any) -> None:
         html.Div("Painted regions", classes="pv-head", style="flex: 1")
         ui.button("Labels", variant="text", prepend_icon="mdi-folder-open-outline",
                   click=(app.files.browse, "['', 'painted']"), data_action="open-labels",
-                  title="Take the labels of a file as regions")  # fmt: skip
+                  title="Open labels as regions")  # fmt: skip
         ui.button("Region", prepend_icon="mdi-plus", click=paint.add, data_action="add-painted")
     html.Div(
         "Add a region and paint it on a slice; streamlines that pass it, miss it, end or stay in it are shown alone.",
@@ -283,8 +285,8 @@ def build(app: Any) -> None:
             model_value=("brush_deep ? '3-D' : '2-D'",), update_modelValue="brush_deep = $event === '3-D'",
             mandatory=True, density="compact", style="height: 28px",
         ):  # fmt: skip
-            v3.VBtn("2-D", value="2-D", size="x-small", classes="text-none", title="In the slice alone")
-            v3.VBtn("3-D", value="3-D", size="x-small", classes="text-none", title="In slices beside it, too",
+            v3.VBtn("2-D", value="2-D", size="x-small", classes="text-none", title="In this slice only")
+            v3.VBtn("3-D", value="3-D", size="x-small", classes="text-none", title="In neighbouring slices too",
                     data_action="deep")  # fmt: skip
         with ui.labelled(
             "Range ±", "How far values may be from the one that is clicked, of the image's window",
@@ -293,7 +295,7 @@ def build(app: Any) -> None:
             with html.Div(classes="pv-pair"):
                 ui.slider(
                     model_value=("grow_share",), min=0, max=50, step=1, end=(paint.set_share, "[$event]"),
-                    aria_label="Range of values that are grown over, per cent of the image's window",
+                    aria_label="Range of values, per cent of the image's window",
                 )  # fmt: skip
                 ui.number_field(style="width: 52px", value=("grow_share",),
                                 change=(paint.set_share, "[$event.target.value]"),

@@ -46,9 +46,11 @@ class SelectionActions(Actions):
             return False
         far = max(abs(pixels[-1][0] - pixels[0][0]), abs(pixels[-1][1] - pixels[0][1]))
         if tool == "pick" or (tool == "box" and far < CLICK) or (tool == "lasso" and len(pixels) < 3):
+            if self._app.matrix.pick(*pixels[-1]):
+                return False
             found = scene.selection.pick_at(*pixels[-1], mode=mode, tolerance=6.0)
             if found is None and mode == "replace":
-                self._app.say("There is no streamline there.")
+                self._app.say("No streamline there.")
         elif tool == "box":
             scene.selection.select_box(*pixels[0], *pixels[-1], mode=mode)
         elif tool == "lasso":
@@ -67,7 +69,7 @@ class SelectionActions(Actions):
         app, measurements = self._app, self._app.scene.measurements
         places = [measurements.place_at(*pixel) for pixel in pixels]
         if None in places:
-            app.say("There is nothing to measure at this point; choose a line, surface or slice.")
+            app.say("Nothing to measure there; click a line, a surface or a slice.")
             return self._begin is not None
         if len(places) == 1 and self._begin is not None:
             places.insert(0, self._begin)

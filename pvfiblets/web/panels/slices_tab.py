@@ -291,7 +291,7 @@ def build(app: Any) -> None:
         with html.Div(classes="pv-pair pr-2"):
             html.Div("Cross-hair", classes="pv-head", style="flex: 1")
             ui.button("Image", variant="text", prepend_icon="mdi-plus", click=(app.files.browse, "['', 'slices']"),
-                      data_action="open-slices", title="Lay another image over it")  # fmt: skip
+                      data_action="open-slices", title="Overlay another image")  # fmt: skip
         for kind, label in (("position", "mm"), ("voxel", "Voxel")):
             with ui.labelled(label, data_place=kind), html.Div(classes="pv-pair"):
                 for axis, name in enumerate("xyz" if kind == "position" else "ijk"):

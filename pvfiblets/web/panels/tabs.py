@@ -17,7 +17,7 @@ TABS = (
 )  # fmt: skip
 TAB = "min-width: 0; font-size: 13px; letter-spacing: 0"
 CUTS = (("plane", "Plane"), ("slab", "Slab"), ("box", "Box"), ("sphere", "Sphere"))
-WHAT = (("selected", "selected ones"), ("shown", "all that filters leave"), ("all", "all of the layer"))
+WHAT = (("selected", "selected streamlines"), ("shown", "visible streamlines"), ("all", "all streamlines"))
 WHERE = (("folder", "the served folder"), ("computer", "this computer"))
 
 
@@ -169,7 +169,7 @@ def _regions(app: Any) -> None:
     with html.Div(classes="pv-pair pr-2"):
         html.Div("Regions", classes="pv-head", style="flex: 1")
         eye("show_regions", "Hide regions in the picture", "Show regions in the picture", data_action="show-regions",
-            v_if="filters.regions.length", click="show_regions = !show_regions", title="Show them in the picture",
+            v_if="filters.regions.length", click="show_regions = !show_regions", title="Show regions in the view",
             )  # fmt: skip
     with html.Div(classes="pv-pair px-3 pb-1", style="flex-wrap: wrap"):
         ui.button("Sphere", size="small", prepend_icon="mdi-plus", click=(regions.add, "['sphere']"),
@@ -287,7 +287,7 @@ def _export(app: Any) -> None:
                 )  # fmt: skip
         with ui.labelled("Name"):
             html.Input(
-                classes="pv-num", style="width: auto", value=("export_name",), placeholder="as the layer is called",
+                classes="pv-num", style="width: auto", value=("export_name",), placeholder="layer name",
                 change="export_name = $event.target.value", aria_label="Name of the file", maxlength=200,
                 data_field="export-name",
             )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,23 +26,29 @@ class Cameras:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self._fitted: tuple[str, dict[str, Any]] | None = None  # the view that was chosen last, and its camera
+        self._fit: Callable[[], Any] = lambda: None  # shows everything, as it was last asked for
+        self._fitted: dict[str, Any] | None = None  # the camera that it made
 
     def view(self, name: str) -> None:
         """Look at everything from one of the directions `VIEWS`; the coronal one is seen from the front."""
         if name not in VIEWS:
             raise ValueError(f"view is {shown(name)}; choose one of {', '.join(VIEWS)}")
-        point_camera(self.scene.plotter, name)
-        self._fitted = name, self.camera()
+        self._show_all(lambda: point_camera(self.scene.plotter, name))
 
-    def refit(self) -> None:
-        """Fit the view to a window of another shape, unless the camera was moved since."""
-        if self._fitted is not None and self._fitted[1] == self.camera():
-            self.view(self._fitted[0])
+    def refit(self) -> bool:
+        """Fit the view to another shape of its place, unless the camera was moved since; return whether it was not."""
+        fits = self._fitted is not None and self._fitted == self.camera()
+        if fits:
+            self._show_all(self._fit)
+        return fits
 
     def reset(self) -> None:
         """Move the camera until everything is in the picture, without turning it."""
-        self.scene.plotter.renderer.reset_camera(render=False)  # the plotter's own renders
+        self._show_all(lambda: self.scene.plotter.renderer.reset_camera(render=False))  # the plotter's own renders
+
+    def _show_all(self, fit: Callable[[], Any]) -> None:
+        fit()
+        self._fit, self._fitted = fit, self.camera()
 
     @property
     def parallel(self) -> bool:

@@ -25,7 +25,8 @@ MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf
 
 OF_VERTICES = (*OF_GIFTI, *OF_FREESURFER)  # suffixes of files with a number or a label for each vertex of a surface
 
-VALUES = (".tsf", *OF_VERTICES)  # suffixes of files with values for the lines, or for the vertices, of another file
+VALUES = (".tsf", ".csv", ".tsv", ".txt", ".npy", *OF_VERTICES)
+"""Suffixes of files with values for the lines, or for the vertices, of another file."""
 
 TABLES = (".txt", ".ctab", ".label", ".lbl", ".tsv", ".label.gii", ".label.gii.gz")
 """Suffixes of files with names and colours of labels."""

@@ -200,7 +200,7 @@ class Files:
         elif loaded.kind == "mesh":
             from pvfiblets.plotting.gifti import with_vertex_values as add
         else:
-            from pvfiblets.plotting.fiblets.sources import with_values_of as add
+            from pvfiblets.plotting.fiblets.along import with_table_of as add
 
         data, stamps = loaded.data, dict(loaded.stamps)
         for path in paths:

@@ -182,6 +182,7 @@ class Scene:
         lines = [(layer, actor) for layer, actor in actors if layer.kind in LINES]
         self.canvas.become(state.painting, lines)
         self.bundles.sync.show(state, lines, regrouped)
+        self.matrix.draw(state)
         if state.background != self.plotter.background_color.hex_rgb:
             self.plotter.set_background(state.background)
         if state.measurements != self._measured:
@@ -267,9 +268,9 @@ class Scene:
         first = layer.kind == "image" and self.slicing.workspace is None
         with self.store.with_new(loaded):
             found = self._add(layer, f"open {layer.name}")
-        if first and len(self.layers) > 1:
-            self.cameras.reset()  # an image is larger than its tracts, and its view has become smaller
-            self.plotter.camera.zoom(1.4)  # VTK has room about it for the box's corners
+        # An image is larger than its tracts, and its view has become smaller.
+        if first and len(self.layers) > 1 and not self.cameras.refit():
+            self.cameras.reset()
         return found
 
     def open(
@@ -304,7 +305,10 @@ class Scene:
     def _last_values(loaded: Loaded) -> str:
         """Return what to colour by of the last file of values: of labels, by the colours of their table."""
         if loaded.kind != "mesh":
-            return name_of(loaded.source.values[-1])
+            name = name_of(loaded.source.values[-1])
+            held = {**loaded.data.per_point, **loaded.data.per_streamline}
+            columns = (one for one in held if one.startswith(f"{name} "))
+            return name if name in held else next(columns, name)
         from pvfiblets.plotting.gifti import shown_array
 
         return shown_array(loaded.data, loaded.source.values[-1])

@@ -66,6 +66,8 @@ class SliceImages:
             said = "turn the oblique slice" if wanted.oblique is not None else "hide the oblique slice"
             self.scene.become(replace(self.scene.state, oblique=wanted.oblique), said, ("oblique",))
         self.scene.slicing.view = wanted
+        if wanted.layout != view.layout:
+            self.scene.cameras.refit()
         return self.scene.slicing.view
 
     def turn_oblique(self, angles: tuple[float, float], drag: int | None = None) -> None:

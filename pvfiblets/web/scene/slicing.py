@@ -143,6 +143,7 @@ class Slicing:
         self._view = SliceView()
         self._glyphs = GlyphLayers()
         self.workspace: Any = None  # none as long as there is no image
+        self._drawn_at: tuple[float, ...] = ()  # the cross-hair in the last frame, mm
         self.painted: Any = None  # of the stack, above all others
 
     # What is seen
@@ -205,6 +206,15 @@ class Slicing:
         """The renderer of the 3-D view; None where it is not shown."""
         found = self._plotter.renderer if self.workspace is None else self._plotter.renderers[_THREE_D]
         return found if found.GetDraw() else None
+
+    def postpones_3d(self, may: bool) -> bool:
+        """Keep the 3-D view in the next frame if that may be and the cross-hair moved beside it; return whether so."""
+        before, self._drawn_at = self._drawn_at, () if self.workspace is None else tuple(self.workspace.position)
+        moved = () not in (before, self._drawn_at) and before != self._drawn_at
+        if not (may and moved and self.beside) or self.view_3d is None:
+            return False
+        self.workspace.postpone(self.view_3d)
+        return True
 
     def boxes(self) -> list[dict[str, Any]]:
         """Return where views are in the picture, as shares of it from its upper left, and how wide a pixel is, mm."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -240,6 +240,14 @@ class Matrix:
     contrast: str = "count"
     statistic: str | None = None
     radius: float = 4.0
+    graph: bool = False  # whether its nodes and edges are in the 3-D view
+    threshold: float = 0.0  # weaker connections are not shown
+    log: bool = True  # colours by logarithms
+
+    @property
+    def bare(self) -> Matrix:
+        """The same numbers, however they are shown."""
+        return replace(self, graph=False, threshold=0.0, log=True)
 
 
 @dataclass(frozen=True)

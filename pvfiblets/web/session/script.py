@@ -18,6 +18,7 @@ from pvfiblets.web.scene import layers
 from pvfiblets.web.scene.actors import split_cuts
 from pvfiblets.web.scene.glyph_layers import GLYPHS
 from pvfiblets.web.scene.glyph_layers import arguments as glyph_arguments
+from pvfiblets.web.scene.matrix import graph_looks
 from pvfiblets.web.scene.slicing import image_looks
 from pvfiblets.web.session.document import LINES, Clip, Layer, Matrix, Source, volumes_of
 from pvfiblets.web.session.script_code import Python, code
@@ -270,8 +271,8 @@ class _Writer(ViewWriter):
                 made = f"pvfiblets.compress(pvfiblets.read({self._file(str(source.path))}{space}){keep})"
             self._lines += [f"{name} = {made}"]
             if source.values:
-                self._imports.add("from pvfiblets.plotting.fiblets.sources import with_values_of")
-            self._lines += [f"{name} = with_values_of({name}, {self._file(path)})" for path in source.values]
+                self._imports.add("from pvfiblets.plotting.fiblets.along import with_table_of")
+            self._lines += [f"{name} = with_table_of({name}, {self._file(path)})" for path in source.values]
         return self._wholes[whole]
 
     def _filters(self, name: str, layer: Layer) -> None:
@@ -322,7 +323,15 @@ class _Writer(ViewWriter):
             given["names"] = Python(f"as_label_table({self._file(matrix.names)}).names")
         parcels = self._parcels(matrix.labels)
         self._call("matrix = pvfiblets.connectome", f"{self._names[matrix.layer]}.fiblets", parcels, given)
-        self._lines += ["print(matrix)  # matrix.matrix has the numbers; matrix.save writes them", ""]
+        self._lines += ["print(matrix)  # matrix.matrix has the numbers; matrix.save writes them"]
+        found = self._scene.matrix.connectome(self._scene.state)
+        if matrix.graph and found is not None:
+            looks = {**graph_looks(found, matrix), "show_scalar_bar": False, "reset_camera": False}
+            self._call("graph = plotter.add_connectome", "matrix", parcels, looks)
+            if cell := self._scene.matrix.cell(self._scene.state):
+                self._imports.add("import numpy as np")
+                self._lines += [f"graph.edge_actor.select((graph.pairs == {sorted(cell)}).all(axis=1))"]
+        self._lines += [""]
 
     def _selection(self, name: str, layer: Layer) -> None:
         if layer.selected is None:

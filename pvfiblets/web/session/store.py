@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pvfiblets.web.scene.loading import Cancel, Files, Loaded, Progress, Watch
-from pvfiblets.web.session.document import LINES, Layer, Source, State
+from pvfiblets.web.session.document import LINES, Layer, Matrix, Source, State
+
+if TYPE_CHECKING:
+    from pvfiblets.query.connectome.matrix import Connectome
 
 __all__ = ["Store"]
 
-KEPT = 3  # tables of the parcels in which streamlines end: eight bytes a streamline
+KEPT = 3  # tables of the parcels in which streamlines end, eight bytes a streamline, and matrices
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,11 +37,13 @@ class Store:
         self.loaded: dict[tuple[str, Source], Loaded] = {}
         self.shapes: dict[tuple[str, Source], Any] = {}
         self.ends: list[_Ends] = []
+        self.connectomes: list[tuple[Any, Matrix, Connectome]] = []  # with their fiblets
 
     def fork(self) -> Store:
         """Return another that begins with the same; a thread may fill it while this one is in use."""
         twin = Store(self.files)
-        twin.loaded, twin.shapes, twin.ends = self.loaded.copy(), self.shapes.copy(), list(self.ends)
+        twin.loaded, twin.shapes = self.loaded.copy(), self.shapes.copy()
+        twin.ends, twin.connectomes = list(self.ends), list(self.connectomes)
         return twin
 
     def take(self, other: Store) -> None:
@@ -46,6 +51,9 @@ class Store:
         self.loaded = {**other.loaded, **self.loaded}
         self.shapes = {**other.shapes, **self.shapes}
         self.ends = [*self.ends, *(one for one in other.ends if one not in self.ends)][-KEPT:]
+        known = [id(one) for *_, one in self.connectomes]
+        self.connectomes += [one for one in other.connectomes if id(one[-1]) not in known]
+        del self.connectomes[:-KEPT]
 
     @contextmanager
     def with_new(self, loaded: Loaded) -> Iterator[None]:
@@ -120,6 +128,11 @@ class Store:
             self.ends = [*self.ends[1 - KEPT :], found]
         return found.labels
 
+    def connectome(self, fiblets: Any, matrix: Matrix) -> Connectome | None:
+        """Return the numbers of a matrix; None if they are not known."""
+        known = (found for data, of, found in self.connectomes if data is fiblets and of == matrix.bare)
+        return next(known, None)
+
     def keep(self, states: Iterable[State]) -> None:
         """Release data that none of some documents needs."""
         needed = set()
@@ -129,12 +142,14 @@ class Store:
         self.loaded = {key: loaded for key, loaded in self.loaded.items() if key in needed}
         alive = [loaded.data for loaded in self.loaded.values()]
         self.ends = [one for one in self.ends if any(one.fiblets is data for data in alive)]
+        self.connectomes = [one for one in self.connectomes if any(one[0] is data for data in alive)]
 
     def clear(self) -> None:
         """Release everything."""
         self.loaded.clear()
         self.shapes.clear()
         self.ends.clear()
+        self.connectomes.clear()
 
     def _read(self, kind: str, source: Source, progress: Progress | None, cancel: Cancel | None) -> Loaded:
         if (kind, source) not in self.loaded:

@@ -6,9 +6,10 @@ fewer pixels meanwhile, which the browser enlarges, with fewer points of their l
 and large sets with fewer streamlines (:mod:`pvfiblets.web.view.pace`).
 
 Once the pointer rests, the full-resolution frame is sent at full quality; if the last one had all its pixels, without
-drawing again. It is drawn in pieces, and aborted at an event (:mod:`pvfiblets.mappers.incremental_frame`). If nothing
-happens then, the accumulation samples of ``plotter.picture.antialias`` are drawn, one between any two events, and their
-mean is sent when it is finished.
+drawing again. Keys that move the cross-hair show panes of slices first, and the 3-D view in the next picture. It is
+drawn in pieces, and aborted at an event (:mod:`pvfiblets.mappers.incremental_frame`). If nothing happens then, the
+accumulation samples of ``plotter.picture.antialias`` are drawn, one between any two events, and their mean is sent when
+it is finished.
 """
 
 from __future__ import annotations
@@ -65,7 +66,8 @@ class PictureStream:
         elsewhere: Callable[[], bool] = lambda: False,
         left_out: Callable[[], Any] = lambda: None,
         pane_at: Callable[[float, float], Any] = lambda _x, _y: None,
-        resized: Callable[[], None] = lambda: None,
+        resized: Callable[[], object] = lambda: None,
+        postpones: Callable[[bool], bool] = lambda _: False,
     ) -> None:
         from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
@@ -91,6 +93,8 @@ class PictureStream:
         self._wanted = asyncio.Event()
         # then asked for the renderer that somebody else draws, while pictures are of all others; None for none
         self._left_out = left_out
+        # then asked to postpone views that may change a picture later, if it may; returns whether there are any
+        self._postpones = postpones
         self._moved = 0.0
         self._size = (300, 300)  # of the whole picture
         self._scale = 1.0  # its pixels for one of the page
@@ -284,7 +288,14 @@ class PictureStream:
     async def _frame(self) -> None:
         """Draw and send a frame, and what follows it when the camera rests."""
         moving = self.moving
-        if not moving and not await self._ahead():
+        if self._postpones(not moving and self._level is LEVELS[0]):  # coarse frames are quicker still
+            await self._send(self._draw(), self.still_quality)
+            self._stale = True
+            self._after()
+            await self._drained()
+            if await self._wanted_within(HEARD) or not await self._pieces():  # so that it leaves before more is drawn
+                return
+        elif not moving and not await self._ahead():
             return  # the event requests its own frame
         pixels = self._draw(self._pace.choose() if moving else LEVELS[0])
         self._after()
