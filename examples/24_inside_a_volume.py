@@ -25,7 +25,7 @@ surface = {"mode": "isosurface", "values": 90, "smooth": 0.8, "show_scalar_bar":
 bite = pv.Sphere(radius=62, center=(45, 48, 42), theta_resolution=90, phi_resolution=90)
 plotter.add_raycast_volume(head, **surface, color="#f0cdb2").clip(bite, inside=False)
 grey = {"cmap": "gray", "clim": (0, 250), "opacity": [0, 0] + [1] * 30, "show_scalar_bar": False}
-plotter.add_raycast_volume(head, **grey).clip(regions.Sphere((45, 48, 42), 63.5) - regions.Sphere((45, 48, 42), 62))
+plotter.add_raycast_volume(head, **grey).clip(regions.Sphere((45, 48, 42), 63.5) - regions.Sphere((45, 48, 42), 61.9))
 plotter.camera_position = [(235, 211, 188), (0, 0, 0), (0, 0, 1)]
 plotter.subplot(1)
 voxels = np.add.outer((way[-3] - tree.affine[:3, 3]) / tree.spacing, (-38, 38)).ravel()
