@@ -1,13 +1,12 @@
 """Makes docs/pictures/beside_vtk.jpg, four scenes as add_mesh draws them and as this package does, by their defaults.
 
 ``python docs/beside_vtk_pictures.py``. The data come from the folder that ``PVFIBLETS_DATA`` names, or of
-``../shared/data``: a bundle, a whole brain, the flow in a carotid artery; the vessel tree is made up.
+``../shared/data``: a bundle, a whole brain, the flow in a carotid artery; the vessel tree is synthetic.
 """
 
 from __future__ import annotations
 
 import os
-import runpy
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from PIL import Image
 
 import pvfiblets
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.synthetic.vessels import vessel_lines
 
 HERE = Path(__file__).resolve().parent
 DATA = Path(os.environ.get("PVFIBLETS_DATA", HERE.parents[1] / "shared" / "data"))
@@ -57,12 +57,11 @@ def flow() -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
 
 
 def vessels() -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
-    """Return what adds the example's tree of vessels, by radius: a mesh of VTK's tube filter, and spline tubes."""
-    tree = runpy.run_path(str(HERE.parent / "examples" / "14_vessels.py"), run_name="example")["vessel_tree"]()
+    """Return what adds a tree of vessels, by radius: a mesh of VTK's tube filter, and spline tubes."""
+    tree = vessel_lines()
     mesh = tree.tube(scalars="radius", absolute=True)
     more = {"scalars": "radius", "cmap": "autumn_r", "log_scale": True, "show_scalar_bar": False}
-    shape = {"tangents": "direction", "scaled": True}
-    return lambda p: p.add_mesh(mesh, **more), lambda p: p.add_spline_tubes(tree, **shape, **more)
+    return lambda p: p.add_mesh(mesh, **more), lambda p: p.add_spline_tubes(tree, **more)
 
 
 def tile(add: Callable[[Any], Any], ground: str, view: str) -> np.ndarray:

@@ -13,6 +13,8 @@ from PIL import Image
 
 HERE = Path(__file__).resolve().parent
 EXAMPLES = HERE.parent / "examples"
+DATA = Path(os.environ.get("PVFIBLETS_DATA", HERE.parents[1] / "shared" / "data"))
+ARGUMENTS = {"23_tracts_in_their_anatomy": [DATA / "nv_MNI152_2009_template.nii.gz"]}  # after the folder
 WIDTH = 1600  # pixels at most: a page is half as wide, on a sharp screen
 QUALITY = 88
 
@@ -59,7 +61,8 @@ def main() -> None:
         for example in sorted({example for parts in wanted.values() for example, _ in parts}):
             folder = Path(home) / example
             folder.mkdir()
-            subprocess.run([sys.executable, EXAMPLES / f"{example}.py", folder], check=True, env=environment)
+            command = [sys.executable, EXAMPLES / f"{example}.py", folder, *ARGUMENTS.get(example, [])]
+            subprocess.run(command, check=True, env=environment)
         for name, parts in wanted.items():
             picture = beside([Image.open(Path(home) / example / f"{drawn}.png") for example, drawn in parts])
             picture.thumbnail((WIDTH, picture.height))

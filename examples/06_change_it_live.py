@@ -23,7 +23,6 @@ actor = plotter.add_fiblets(brain_streamlines(8_000), name="brain", scalar_bar_a
 plotter.view_vector((0, 0, 1), viewup=(0, 1, 0))
 plotter.camera.zoom(1.4)
 plotter.screenshot(folder / "live_1_orientation.png")
-
 actor.scalars, actor.cmap, actor.clim = "curvature", "inferno", (0.0, 0.2)
 plotter.scalar_bars["curvature [1/mm]"].SetVerticalTitleSeparation(12)  # off the first number
 plotter.render()
@@ -37,6 +36,5 @@ plotter.screenshot(folder / "live_3_gold.png")
 
 report = actor.explain()
 print("active:", ", ".join(report["features"]))
-for item in report["passes"]:
-    print(f"  {item['name']:<12} {item['ms']:8.2f} ms")
+print(*(f"  {item['name']:<12} {item['ms']:8.2f} ms" for item in report["passes"]), sep="\n")
 print(f"  {report['gpu_bytes'] / 1e6:.1f} MB on the GPU")

@@ -4,8 +4,7 @@ Cut
 
 Cut a tractogram: by a plane, a box without a ball, a mesh with a hole, and a slab with an image in it.
 
-Run it as ``python examples/09_cut.py [FOLDER]``. In a window, ``plotter.fiblets.add_clip_plane_widget()`` and its
-kin let you drag the same cuts.
+Run it as ``python examples/09_cut.py [FOLDER]``. In a window, ``plotter.fiblets.add_clip_plane_widget()`` moves a cut.
 """
 
 import sys
@@ -23,11 +22,8 @@ streamlines = brain_streamlines(10_000)
 head = pv.wrap(brain_like(96).values)  # or pvfiblets.read_volume("t1.nii.gz")
 head.spacing, head.origin = (2.0, 2.0, 1.9), (-95, -113, -81)
 torus = pv.ParametricTorus(ringradius=45, crosssectionradius=20).translate((0, 0, 15))
-cuts = {
-    "a plane": ((-1, 0, 0), (0, 0, 0)),
-    "a box without a ball": regions.Box((-60, 60, -75, 20, -20, 70)) - regions.Sphere((0, -75, 50), 50),
-    "a torus": torus,
-}
+box = regions.Box((-60, 60, -75, 20, -20, 70)) - regions.Sphere((0, -75, 50), 50)
+cuts = {"a plane": ((-1, 0, 0), (0, 0, 0)), "a box without a ball": box, "a torus": torus}
 plotter = pv.Plotter(off_screen=True, window_size=(1000, 800), shape=(2, 2))
 plotter.set_background("black", all_renderers=True)
 for index, title in enumerate([*cuts, "a slab, with a slice of an image"]):

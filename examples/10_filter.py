@@ -32,11 +32,9 @@ for index, title in enumerate(titles):
 by_number, by_region, by_group, by_mask = plotter.fiblets
 by_number.criterion("length", (50, 90))
 by_number.criterion("curvature", (0, 0.06))  # a number per point: hides parts of streamlines
-by_region.include(ball)
-by_region.exclude(regions.ends_in(ball))
+by_region.include(regions.passes(ball) & ~regions.ends_in(ball))
 by_group.groups_shown = ["callosum", "corona", "thalamic"]
 chosen = fiblets.select(regions.ends_in(top) & regions.passes(ball))
-chosen[::50] = True
 by_mask.show_only(chosen)
 plotter.screenshot(folder / "filter.png")
 fiblets[chosen].save(folder / "chosen.trk")

@@ -26,7 +26,6 @@ actor.select(brain.groups["arcuate"][::3], as_tubes=True, radius=0.9)  # colours
 actor.selection_style(dim=0.75)
 plotter.view_vector((-1.0, 0.3, 0.4), viewup=(0, 0, 1))
 plotter.camera.zoom(1.5)
-
 plotter.subplot(0, 1)
 some = brain[brain.groups["callosum"][::20]]
 nodes = [range(start, stop, 10) for start, stop in zip(some.offsets[:-1], some.offsets[1:], strict=True)]

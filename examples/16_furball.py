@@ -29,7 +29,6 @@ for index, zoom in enumerate((1.4, 9.0)):
     plotter.view_vector((1.0, -1.0, 0.5), viewup=(0, 0, 1))
     plotter.camera.zoom(zoom)
 plotter.show(auto_close=False)
-
 segment, t = actor.pick_at(1012, 350)  # the middle of the right image; None over the background
 hair = tubes.tubes[segment]
 *place, radius = cubic(tubes, segment, t)

@@ -2,11 +2,9 @@
 An angiogram
 ============
 
-Vessels in a volume, seen four ways by casting a ray for each pixel: as a surface, by the greatest and by the first
-peak on each ray, and as light through a medium.
+Vessels in a volume: as a surface, by the greatest and by the first peak on each ray, and as light through a medium.
 
-Run it as ``python examples/22_angiogram.py [FOLDER]``. Pictures like figures 5 and 6 of Lesar 2015. The vessels are
-made up; an angiogram in a NIfTI, NRRD or MetaImage file is drawn just so, by its path.
+Run it as ``python examples/22_angiogram.py [FOLDER]``. Pictures like figures 5 and 6 of Lesar 2015.
 """
 
 import sys
@@ -18,14 +16,14 @@ from pvfiblets.synthetic.vessels import vessel_tree
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 folder.mkdir(parents=True, exist_ok=True)
-opacity = [0, 0.02, 0.2, 0.7, 0.95, 1, 1]  # thin parts nearly vanish, bright parts are solid
+light = [0, 0.02, 0.2, 0.7, 0.95, 1, 1]  # thin parts nearly vanish, bright parts are solid
 ways = {
     "surface": {"mode": "isosurface", "values": 70, "color": "#f2907c"},
     "greatest value": {"mode": "mip", "cmap": "gray", "opacity": 1.0},
     "first peak of 60 or more": {"mode": "local-mip", "peak": 60, "cmap": "gray", "opacity": 1.0},
-    "light": {"mode": "composite", "cmap": "hot", "opacity": opacity, "opacity_unit_distance": 2.0},
+    "light": {"mode": "composite", "cmap": "hot", "opacity": light, "opacity_unit_distance": 2.0},
 }
-volume = vessel_tree(192, noise=0.04)
+volume = vessel_tree(192, noise=0.04)  # the path of a NIfTI, NRRD or MetaImage file would do as well
 plotter = pv.Plotter(off_screen=True, window_size=(1240, 1320), shape=(2, 2), border=False)
 plotter.set_background("black", all_renderers=True)
 for index, (title, way) in enumerate(ways.items()):
@@ -34,10 +32,8 @@ for index, (title, way) in enumerate(ways.items()):
     actor = plotter.add_raycast_volume(volume, clim=(20, 255), show_scalar_bar=False, **way)
     if actor.mode == "isosurface":
         actor.ray_occlusion = {"radius": 12.0, "samples": 24}
-    elif actor.mode != "composite":  # the higher peak of two is not always the nearer one: fading says which is
+    elif actor.mode != "composite":  # fading shows which of two peaks is nearer
         actor.depth_cue = {"color": "black", "strength": 0.6}
     plotter.add_text(title, font_size=12, color="white", position=(20, 20))
-    plotter.view_vector((0.35, -1.0, 0.15), viewup=(0, 0, 1))
-    plotter.camera.zoom(1.75)
-    plotter.camera.focal_point = (3.0, 0.0, -8.0)
+    plotter.camera_position = [(103.0, -286.0, 35.0), (3.0, 0.0, -8.0), (0, 0, 1)]
 plotter.screenshot(folder / "angiogram.png")

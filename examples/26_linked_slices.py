@@ -2,8 +2,7 @@
 Slices
 ======
 
-Axial, coronal and sagittal panes and the 3-D view, linked by a cross-hair: an image of a head, fibre directions in
-colour over it, and in each pane the streamlines of the corpus callosum that lie in a slab about its slice.
+Three slice views and a 3-D view, linked by a cross-hair: a head, fibre directions, and streamlines near each slice.
 
 Run it as ``python examples/26_linked_slices.py [FOLDER]``.
 """
@@ -21,8 +20,7 @@ from pvfiblets.synthetic.vessels import brain_like
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 folder.mkdir(parents=True, exist_ok=True)
 head = brain_like(144, noise=0.02)  # a made-up image; a file's path would do as well
-affine = np.diag([1.3, 1.3, 1.25, 1.0]) @ head.affine
-affine[:3, 3] += (0.0, -18.0, 4.0)
+affine = np.diag([1.3, 1.3, 1.25, 1.0]) @ head.affine + np.outer((0, -18, 4, 0), (0, 0, 0, 1))
 fiblets = pvfiblets.compress(brain_streamlines(20_000, seed=2))
 directions = fiblets.density(2.0, contrast="direction")
 counts = fiblets.density(like=directions)
@@ -37,7 +35,6 @@ workspace.position = (8.0, -24.0, 30.0)
 workspace.add_contours(pv.Sphere(radius=15.0, center=workspace.position), "white")
 plotter.view_isometric()
 plotter.camera.zoom(1.4)
-found = workspace.values(radius=3.0)
-print(found.images, {name: len(ids) for name, ids in found.streamlines.items()})
+print(workspace.values(radius=3.0).images)
 plotter.show(auto_close=False)
 plotter.screenshot(folder / "slices.png")

@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from pvfiblets.synthetic.vessels import LEAST_RADIUS, ROOT_RADIUS, VESSEL_SIDE, _grown, brain_like, vessel_tree
+from pvfiblets.synthetic.vessels import (
+    LEAST_RADIUS,
+    ROOT_RADIUS,
+    VESSEL_SIDE,
+    _grown,
+    brain_like,
+    vessel_lines,
+    vessel_tree,
+)
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +71,26 @@ def test_more_voxels_show_the_same(tree):
     assert np.corrcoef(coarse.ravel(), blocks.ravel())[0, 1] > 0.6
     head, finer = brain_like(25).values / 255.0, brain_like(97).values[::4, ::4, ::4] / 255.0
     assert np.corrcoef(head.ravel(), finer.ravel())[0, 1] > 0.9
+
+
+def test_lines_run_through_the_vessels_of_the_volume(tree):
+    volume, segments = tree
+    lines = vessel_lines()
+    branches = [lines.get_cell(index).point_ids for index in range(lines.n_cells)]
+    assert sum(len(branch) - 1 for branch in branches) == len(segments) - 1  # without the aneurysm
+    assert lines["radius"].max() == ROOT_RADIUS
+    # Each branch is as wide as its vessel, but begins at a point of another: all of them hang on three roots.
+    nodes = {}
+    for branch in branches:
+        assert np.ptp(lines["radius"][branch[1:]]) == 0.0
+        for node in branch[1:]:
+            nodes[node] = nodes.get(node, 0) + 1
+    assert set(nodes.values()) == {1}
+    assert len({branch[0] for branch in branches} - nodes.keys()) == 3
+    thick = lines.points[lines["radius"] > 1.5 * volume.spacing[0]]
+    voxels = np.rint((thick - volume.affine[:3, 3]) / volume.spacing).astype(int)
+    voxels = voxels[(voxels >= 0).all(axis=1) & (voxels < 96).all(axis=1)]
+    assert (volume.values[tuple(voxels.T)] > 100).all()
 
 
 @pytest.mark.parametrize("make", [vessel_tree, brain_like])

@@ -137,7 +137,7 @@ def fill(
                 "opacity": opacity, "background": background, "no_lighting": no_lighting, "look": look,
                 **wishes}  # fmt: skip
         if len(paths) > 1:
-            raise ValueError(f"{' '.join(paths)}: a session has all of its files; give it alone")
+            raise ValueError(f"{' '.join(paths)}: a session names all of its files; give the session alone")
         if named := [name for name, value in said.items() if value not in (None, False, [])]:
             raise ValueError(f"{paths[0]} is a session with its own settings: leave --{named[0].replace('_', '-')} out")
         scene = open_session(plotter, paths[0])
@@ -167,7 +167,7 @@ def fill(
         actors[kind].append(added)
     for kind, given in of.items():
         if given and not actors[kind]:
-            raise ValueError(f"--{kind} is about {kind}, and no FILE has any")
+            raise ValueError(f"--{kind} applies to {kind}, but no FILE has any")
     cut_and_filter(actors, {**NOTHING, **wishes})
     point_camera(plotter, view or "oblique")
     return None

@@ -24,8 +24,8 @@ def report(
     if source is not None:
         if only or data or quick or minutes is not None or seed:
             raise ValueError(
-                "--from makes the page of a report that is there: "
-                "--only, --data, --quick, --minutes and --seed measure anew"
+                "--from writes the page of an existing report; "
+                "leave out --only, --data, --quick, --minutes and --seed, which start new measurements"
             )
         made = Report.load(source)
         if Path(source).resolve() not in (folder.resolve(), (folder / "report.json").resolve()):

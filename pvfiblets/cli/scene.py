@@ -117,7 +117,7 @@ def cut_and_filter(actors: Mapping[str, Sequence[Any]], wishes: Wishes) -> None:
                     _cut(actor, region, inside)
     filters = {name: wishes[name] for name in ("color_along", "include", "exclude", "criterion", "groups", "subset")}
     if not lines and (named := [name.replace("_", "-") for name, said in filters.items() if said]):
-        raise ValueError(f"--{named[0]} is about streamlines, and no FILE has any")
+        raise ValueError(f"--{named[0]} applies to streamlines, but no FILE has any")
     for actor in lines:
         for words in filters["color_along"]:
             actor.color_along(words[0], **options_of([words[1:]], "--color-along"))

@@ -155,7 +155,7 @@ class _Trx:
 
     def _warn(self, key: str, value: int, count: int) -> None:
         warnings.warn(
-            f"{self.path}: {key} is {value}, and all arrays are of {count}, which is believed; write the file again",
+            f"{self.path}: {key} is {value}, but all arrays have {count}, which is used; write the file again",
             stacklevel=2,
         )
 

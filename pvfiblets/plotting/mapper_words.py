@@ -72,7 +72,7 @@ class Plotted(EngineMapper[AnyOptions]):
         actor.clim = shared_limits(clim, actor._settings, actor._scalars)  # noqa: SLF001
         if actor._scalars is None and not actor._hidden:  # noqa: SLF001
             warnings.warn(
-                f"the range {tuple(clim)} changes nothing yet: the actor has one colour and no scalars",
+                f"the range {tuple(clim)} has no effect yet: the actor has one colour and no scalars",
                 UserWarning,
                 stacklevel=3,
             )

@@ -42,7 +42,7 @@ def as_region(what: Any) -> Region:
         return _labels(what)
     if isinstance(what, np.ndarray) and what.ndim == 3:
         raise TypeError(
-            f"an array of shape {what.shape} is no region: it does not say where it lies; "
+            f"an array of shape {what.shape} is no region: it has no position; "
             "give regions.Labels(array, affine)"
         )
     numbers = _numbers(what)

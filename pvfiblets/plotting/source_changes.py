@@ -36,8 +36,8 @@ class SourceChanges:
         if not hasattr(actor, "update"):
             how = f"{add}(mesh, name={actor.name!r}) draws it anew in the actor's place"
         warnings.warn(
-            f"{', '.join(changed)} of the {type(source).__name__} changed after {add}() had copied it, and the picture "
-            f"does not follow: {how}",
+            f"{', '.join(changed)} of the {type(source).__name__} changed after {add}() had copied it, so the "
+            f"image is out of date: {how}",
             UserWarning,
             stacklevel=4,
         )

@@ -8,14 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.volumes.volume import RaycastVolume
 
-__all__ = ["brain_like", "vessel_tree"]
+if TYPE_CHECKING:
+    import pyvista
+
+__all__ = ["brain_like", "vessel_lines", "vessel_tree"]
 
 PEAKS = {"uint8": 255.0, "uint16": 4095.0, "int16": 4095.0, "float32": 1.0}
 """Full brightness of each type: angiographs have 8 or 12 bits."""
@@ -85,6 +88,37 @@ def vessel_tree(n: int, seed: int = 0, dtype: Any = "uint8", *, noise: float = 0
         draw_vessels(segments, which, offsets, 0.5 * VESSEL_SIDE, spacing, edge, float(noise), seed, begin, out)
 
     return _drawn(draw, n, peak, kind, VESSEL_SIDE, "angiogram")
+
+
+def vessel_lines(seed: int = 0) -> pyvista.PolyData:
+    """Make the centre lines of the vessels in :func:`vessel_tree`, without the aneurysm.
+
+    Parameters
+    ----------
+    seed : int, default: 0
+        The same seed gives the vessels of that volume.
+
+    Returns
+    -------
+    pyvista.PolyData
+        A line per branch, in mm. A branch begins at the last point of its parent. The point data ``"radius"`` (mm) have
+        the parent's radius there.
+    """
+    import pyvista as pv
+
+    segments = _grown(seed)[:-1]
+    ends = np.concatenate([segments[:, :3], segments[:, 4:7]])
+    points, nodes = np.unique(ends, axis=0, return_inverse=True)
+    start, end = nodes.reshape(2, -1)
+    radius = np.empty(len(points))
+    radius[start] = segments[:, 3]
+    radius[end] = segments[:, 7]
+    new = (start[1:] != end[:-1]) | (segments[1:, 3] != segments[:-1, 3])
+    branches = np.split(np.arange(len(segments)), 1 + np.flatnonzero(new))
+    cells = [[1 + len(branch), start[branch[0]], *end[branch]] for branch in branches]
+    lines = pv.PolyData(points, lines=np.concatenate(cells))
+    lines["radius"] = radius
+    return lines
 
 
 def brain_like(n: int, seed: int = 0, dtype: Any = "uint8", *, noise: float = 0.0) -> RaycastVolume:

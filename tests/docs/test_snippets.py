@@ -109,3 +109,8 @@ def test_every_example_begins_with_a_title_and_asks_for_nothing_else(example):
     assert set(line) == {"="}
     assert len(line) == len(title)
     assert f"python examples/{example.name}" in " ".join(rest)
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.stem)
+def test_every_example_fits_on_a_screen(example):
+    assert len(example.read_text().splitlines()) <= 45

@@ -207,7 +207,7 @@ def _one(read: Callable[[Path], None], reader: str, target: Path, outcomes: dict
             warnings.simplefilter("error")
             warnings.filterwarnings(
                 "ignore",
-                message=r"(?s).*(which is believed|is taken, by the voxel-to-RAS|left out line [\d, ]+|moved by c_ras)",
+                message=r"(?s).*(which is used|is taken, by the voxel-to-RAS|left out line [\d, ]+|moved by c_ras)",
             )
             read(target)
     except _expected_of(reader) as error:

@@ -227,11 +227,11 @@ def test_contradictions(entries, header, words, tmp_path):
 def test_a_header_off_by_one_warns_and_the_arrays_count(entries, header, method, tmp_path):
     path = packed(tmp_path / "a.trx", entries, header, method)
     for ask in (formats.read, lambda path: Streamlines.concatenate(formats.iter_chunks(path, 3))):
-        with pytest.warns(UserWarning, match=r"a.trx: NB_\w+ is \d, and all arrays are of \d, which is believed"):
+        with pytest.warns(UserWarning, match=r"a.trx: NB_\w+ is \d, but all arrays have \d, which is used"):
             s = ask(path)
         assert s.counts.tolist() == [3, 2]
         np.testing.assert_array_equal(s.points, POINTS)
-    with pytest.warns(UserWarning, match="believed"):
+    with pytest.warns(UserWarning, match="which is used"):
         facts = formats.info(path)
     assert (facts["streamlines"], facts["points"]) == (2, 5)
 

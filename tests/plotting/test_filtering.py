@@ -208,7 +208,7 @@ def test_refused_choices_leave_all_as_it_was(shown):
         actor.criterion(np.arange(399), (0, 1))
     with pytest.raises(KeyError, match="there is no group 'front'; there are: 'left', 'right'"):
         actor.groups_shown = ["front"]
-    with pytest.raises(TypeError, match="does not say where it lies; give regions.Labels"):
+    with pytest.raises(TypeError, match="it has no position; give regions.Labels"):
         actor.include(np.zeros((3, 3, 3), int))
     with pytest.raises(ValueError, match="amount is 401; there are 400 streamlines"):
         actor.subset(401)

@@ -180,7 +180,7 @@ def test_the_plotter_has_a_mapper_whose_range_can_be_set(add, plotter):
     """Of one colour as well, as after ``add_mesh``."""
     actor = add(color="red")
     assert plotter.mapper is actor.mapper
-    with pytest.warns(UserWarning, match=r"the range \(2, 3\) changes nothing yet: .* one colour"):
+    with pytest.warns(UserWarning, match=r"the range \(2, 3\) has no effect yet: .* one colour"):
         plotter.update_scalar_bar_range([2, 3])
     actor.scalars = np.arange(3.0)
     assert actor.clim == (2.0, 3.0)

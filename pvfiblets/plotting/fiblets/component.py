@@ -554,7 +554,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
 
         window = self._plotter.render_window
         if window is None:
-            raise RuntimeError("this plotter is closed and has no OpenGL; ask a new one")
+            raise RuntimeError("this plotter is closed and has no OpenGL context; make a new plotter")
         with borrowed_context(window) as ctx:
             return pipelines(ctx)
 

@@ -95,4 +95,4 @@ def check_range(what: str, values: np.ndarray) -> None:
     numbers = real_numbers(values, what)
     least, most = float(np.nanmin(numbers, initial=0.0)), float(np.nanmax(numbers, initial=0.0))
     if least < 0.0 or most > 1.0:
-        raise ValueError(f"{what} lies between {least:g} and {most:g}; give numbers from 0, not to be seen, to 1")
+        raise ValueError(f"{what} lies between {least:g} and {most:g}; give numbers from 0 (invisible) to 1")

@@ -243,7 +243,7 @@ class SelectableActor(BundledActor):
 
         if scalars is None:
             if self._scalars is None or self._scalars.kind != "point_scalar":
-                raise ValueError("scalars is None, and what colours the actor is no value per point; name one")
+                raise ValueError("scalars is None, but the actor has no values per point; name an array")
             scalars = self._scalars.name
         mean, std = mean_profile(self._fiblets, self.selection, scalars, n)
         name = scalars if isinstance(scalars, str) else str(getattr(scalars, "name", "Data"))

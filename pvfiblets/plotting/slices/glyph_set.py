@@ -55,7 +55,7 @@ class GlyphSet:
     ) -> None:
         glyphs.check_glyphs(image, kind, basis, full, tensor)
         if image.fixels is None and not (scalars is None and length is None):
-            raise ValueError(f"scalars and length are of fixels; {image.name} has {kind}")
+            raise ValueError(f"scalars and length apply to fixels, but {image.name} has {kind}; leave them out")
         self._vectors = glyphs.axes_of_glyphs(kind, tensor, vectors)
         self.image, self.kind = in_scanner_axes(image, self._vectors) if kind == "peaks" else image, kind
         self._basis, self._full, self._tensor = basis, bool(full), tensor

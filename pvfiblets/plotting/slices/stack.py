@@ -144,7 +144,7 @@ class SliceStack:
     def put(self, source: Any, given: Given, *, name: str | None = None, **meaning: Any) -> SliceLayer:
         """Add a layer of settings that are checked already."""
         if len(self._layers) >= MOST_LAYERS:
-            raise ValueError(f"{self.name!r} has {MOST_LAYERS} layers, as many as there may be; remove one first")
+            raise ValueError(f"{self.name!r} has {MOST_LAYERS} layers, the maximum; remove one first")
         layer = SliceLayer(as_slice_image(source, name), given, **meaning)
         taken = {one.name for one in self._layers}
         stem, number = layer.name, 2
@@ -179,7 +179,7 @@ class SliceStack:
         first = [self.layer(one) if isinstance(one, str) else one for one in layers]
         order = [*first, *(one for one in self._layers if one not in first)]
         if sorted(map(id, order)) != sorted(map(id, self._layers)):
-            raise ValueError(f"the order {first} has a layer twice, or one of other slices")
+            raise ValueError(f"the order {first} must name each layer of these slices once")
         if order != self._layers:
             self._layers = order
             self.changed()

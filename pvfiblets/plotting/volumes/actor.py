@@ -393,8 +393,8 @@ class VolumeActor(VolumeSettings, ClippedActor):
         if mode == LIGHT:
             if casting.integrator in ("adaptive", "preintegrated") and len(alpha) > LARGEST_PREINTEGRATED:
                 raise ValueError(
-                    f"n_colors is {len(alpha)}; light that is integrated beforehand has {LARGEST_PREINTEGRATED} "
-                    "colours at most: give fewer, or integrator='exponential'"
+                    f"n_colors is {len(alpha)}, but {casting.integrator!r} takes {LARGEST_PREINTEGRATED} at most; "
+                    "give fewer, or integrator='exponential'"
                 )
             return casting, None
         if casting.layered:
