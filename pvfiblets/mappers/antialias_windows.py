@@ -11,6 +11,7 @@ import weakref
 from contextlib import ExitStack, nullcontext
 from typing import Any, Self
 
+from pvfiblets.mappers.scene import keep_views
 from pvfiblets.mappers.scene_state import without_multisamples
 from pvfiblets.support.progress_bar import progress_bar
 
@@ -33,7 +34,9 @@ def refine(window: Any, *, cheaply: bool = False) -> bool:
     if any(picture.draw_part() for picture in wanting):
         return True
     singly = [picture for picture in wanting if picture.samples_others]
-    for picture in singly or wanting:
+    # Somebody may wait for the window: it draws one view, where it draws no others along.
+    some = 1 if window.GetAddressAsString("") in keep_views and not cheaply else None
+    for picture in (singly or wanting)[:some]:
         picture.refinement.due = True  # also where parts are wanted: views that stay as they were are not drawn
         picture.hurries = cheaply
     if wanting:

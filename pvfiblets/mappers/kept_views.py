@@ -13,7 +13,7 @@ from collections.abc import Callable, Hashable, Iterable
 from typing import Any
 
 from pvfiblets.mappers.antialias_windows import shown_pictures
-from pvfiblets.mappers.scene import in_motion, items_of
+from pvfiblets.mappers.scene import in_motion, items_of, keep_views
 from pvfiblets.mappers.scene_state import scene_state
 from pvfiblets.mappers.windows import weak
 
@@ -34,6 +34,7 @@ class KeptViews:
         # how often each view was drawn, by the address of its renderer
         self.frames = {one.GetAddressAsString(""): 0 for one in self._renderers}
         self._window: Any = weak(window)
+        keep_views.add(window.GetAddressAsString(""))
         reference = weakref.ref(self)
 
         def call(_caller: Any, event: str) -> None:
@@ -46,6 +47,8 @@ class KeptViews:
     def stop(self) -> None:
         """Draw all views in every frame again; twice is harmless."""
         window = self._window.Get()
+        if window is not None:
+            keep_views.discard(window.GetAddressAsString(""))
         while self._tags:
             tag = self._tags.pop()
             if window is not None:

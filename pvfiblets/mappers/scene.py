@@ -30,6 +30,9 @@ partly_shown: set[str] = set()
 """Addresses of vtkRenderers that draw some of their props alone, and have no others meanwhile: whatever follows what a
 renderer shows waits until all are there again."""
 
+keep_views: set[str] = set()
+"""Addresses of windows that draw changed views alone (`pvfiblets.mappers.kept_views`)."""
+
 USUAL_DPI = 72  # default dots per inch of a vtkRenderWindow
 
 # 1 - window depth = w stands in the third place: NDC depth is 2 * depth - 1 = 1 - 2 * w.

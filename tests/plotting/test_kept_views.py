@@ -149,6 +149,21 @@ def test_pictures_at_rest_are_refined_all_the_same(four, workspace):
     np.testing.assert_array_equal(picture, whole(four, workspace))
 
 
+def test_pictures_at_rest_are_refined_view_by_view(four, workspace):
+    for at in range(4):
+        four.subplot(*divmod(at, 2))
+        four.picture.antialias = 4
+    four.render()
+    counts = []
+    more = True
+    while more:  # whoever waits for the window waits for one view
+        before = sum(workspace._kept.frames.values())
+        more = four.picture.refine()
+        counts.append(sum(workspace._kept.frames.values()) - before)
+    assert max(counts) == 1
+    assert sum(counts) >= 16
+
+
 def test_all_views_are_drawn_once_the_workspace_has_stopped(four, workspace):
     workspace.stop()
     four.render()
