@@ -292,7 +292,7 @@ def test_a_session_is_the_picture_of_the_page(files, tmp_path):
         (["lines.tck", "--include", "ends_in"], "and no shape"),
         (["lines.tck", "--include", "sphere", "center=0,0,0", "radius=5", "sampling=0.5"], "choose lines or points"),
         (["image.nii.gz", "--volumes", "moed=mip"], "moed"),
-        (["view.json", "lines.tck"], "give it alone"),
+        (["view.json", "lines.tck"], "give the session alone"),
         (["view.json", "--cmap", "hot"], "leave --cmap out"),
         (["bad.json"], "program is None"),
         (["labels.nii"], "No such file"),

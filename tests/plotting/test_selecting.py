@@ -286,7 +286,7 @@ def test_profile(plotter, three_lines):
     with pytest.raises(ValueError, match="per streamline"):
         actor.selection_profile("length")
     actor.color = "red"
-    with pytest.raises(ValueError, match="name one"):
+    with pytest.raises(ValueError, match="name an array"):
         actor.selection_profile()
 
 

@@ -279,7 +279,7 @@ def held():
         (BALL, {"opacity": {}}, TypeError, "opacity is a dict"),
         (BALL, {"opacity_unit_distance": 0.0}, ValueError, "unit of opacity is 0 mm"),
         (BALL, {"n_colors": 0}, ValueError, "n_colors is 0"),
-        (BALL, {"n_colors": 2000}, ValueError, "n_colors is 2000; .* integrator='exponential'"),
+        (BALL, {"n_colors": 2000}, ValueError, "n_colors is 2000, .* integrator='exponential'"),
         (BALL, {"cmap": "no such map"}, ValueError, "no such map"),
         (BALL, {"values": [np.nan], "mode": "isosurface"}, ValueError, "values of isosurfaces"),
         (BALL, {"values": [], "mode": "isosurface"}, ValueError, "1 to 8 finite numbers"),

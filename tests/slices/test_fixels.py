@@ -121,7 +121,7 @@ def test_what_is_no_directory_of_fixels_is_refused(folder, tmp_path):
     slices = plotter.add_slices(made / f"t1.{suffix}")
     with pytest.raises(ValueError, match="has no fixels"):
         slices.add_fixels(made / f"t1.{suffix}")
-    with pytest.raises(ValueError, match="of fixels"):
+    with pytest.raises(ValueError, match="apply to fixels"):
         slices.add_glyphs((np.ones((3, 3, 3, 3)), np.eye(4)), scalars="fd")
     with pytest.raises(ValueError, match="clim is"):
         slices.add_fixels(made, "fd", clim=(1, 0))
