@@ -104,8 +104,8 @@ def test_a_scene_has_what_it_asks_for_tells_all_of_it_and_waits_for_nothing(seen
     # ``explain()`` of an actor names them; effects on whole pictures are no actor's.
     told = set(seen[name]["told"] + seen[name]["told apart"]) & set(FEATURES)
     of_pictures = {switch for switch in FEATURES if switch.startswith(("PICTURE_", "TONE_"))}
-    earlier = {"EDGES"} if name == "picture: refined" else set()  # of the frame before the samples
-    assert told | earlier == set(seen[name]["features"]) - of_pictures
+    samples = {"WIDE_LINES"} if name == "picture: refined" else set()  # the last frame is of the camera as it is
+    assert told | samples == set(seen[name]["features"]) - of_pictures
     # None of a camera in motion; at rest, what is to be exact at once and no card can tell without being asked.
     waits = seen[name]["waits"]
     if not waits:
