@@ -250,7 +250,7 @@ class Refinement:
 
     @property
     def is_sample(self) -> bool:
-        """Whether the frame is a sample, or shows those of all lines at once."""
+        """Whether the frame is one sample, or a layer of all samples."""
         return self._frame in (_Frame.SAMPLE, _Frame.ADDED)
 
     @property

@@ -323,7 +323,7 @@ class Picture:
 
     def _insert(self) -> None:
         """Put the prop before all others of the renderer, while it draws: users' lists of actors lack it."""
-        if self._prop is None:  # who followed a frame within this one has switched it off
+        if self._prop is None:  # a callback switched the picture off in a frame within this one
             return
         props = self.renderer.GetViewProps()
         if props.GetNumberOfItems() == 0:

@@ -63,7 +63,7 @@ def split_arguments(
 
 
 def refuse_unknown(component: Any, own: Iterable[str]) -> None:
-    """Raise a TypeError for arguments that a component does not take; for those of ``add_mesh`` it names others."""
+    """Raise a TypeError for unknown arguments; for those of ``add_mesh`` it names substitutes."""
     name = next((name for name in own if name not in component.OWN), None)
     if name is None:
         return

@@ -27,7 +27,7 @@ class CullingChoice:
     """Decides picture by picture."""
 
     def __init__(self, clock: PictureClock, culling: bool = True) -> None:
-        self.culling = culling  # What was found to be faster
+        self.culling = culling  # the faster method, once measured
         self._clock = clock
         self._planned: list[tuple[bool, bool]] = []  # whether culled, and whether its time counts
         self._times: dict[bool, list[float]] = {True: [], False: []}
