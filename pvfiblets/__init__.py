@@ -21,7 +21,7 @@ _HOME = {
     "Streamlines": "streamlines",
     "UnreadSet": "codec.shards.unread_set",
     "clusters": "query.bundles.clusters",
-    "compress": "codec.compress",
+    "compress": "codec.encoding.compress",
     "compress_file": "codec.files.convert",
     "connectome": "query.connectome.matrix",
     "density": "query.density.volume",
@@ -45,7 +45,7 @@ __all__ = ["__version__", *_HOME, *_ROOMS]
 
 if TYPE_CHECKING:
     from . import synthetic
-    from .codec.compress import compress as compress
+    from .codec.encoding.compress import compress as compress
     from .codec.error import CodingError, measure_error
     from .codec.fibletset import FibletSet as FibletSet
     from .codec.files.convert import compress_file as compress_file

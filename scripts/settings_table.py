@@ -10,7 +10,7 @@ from pathlib import Path
 
 from pvfiblets.plotting.fiblets.settings import FibletSettings
 from pvfiblets.plotting.halos.settings import HaloLineSettings, HaloPointSettings
-from pvfiblets.plotting.settings import Argument, Setting, Settings, arguments
+from pvfiblets.plotting.settings.settings import Argument, Setting, Settings, arguments
 from pvfiblets.plotting.slices.settings import SliceSettings
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.volumes.settings import VolumeSettings

@@ -155,20 +155,20 @@ USES = {
     "slices": lambda path: pvfiblets.slices.image.as_slice_image(path).affine,
     "volume": lambda path: pvfiblets.volumes.sources.as_raycast_volume(path).affine,
     "scalars": lambda path: pvfiblets.plotting.fiblets.sources.as_volume(str(path)).affine,
-    "region": lambda path: pvfiblets.plotting.region_sources.as_region(path)._volume.to_mm,
+    "region": lambda path: pvfiblets.plotting.filtering.region_sources.as_region(path)._volume.to_mm,
     "page's labels": lambda path: label_affine(path),
 }
 
 
 def label_affine(path):
-    from pvfiblets.web.scene.loading import Files
+    from pvfiblets.web.scene.files.loading import Files
     from pvfiblets.web.session.document import Source
 
     return Files(path.parent).load(Source(path.name), "labels").data.affine
 
 
 def test_the_page_shows_the_warning_of_a_file_it_opens(tmp_path):
-    from pvfiblets.web.scene.loading import Files
+    from pvfiblets.web.scene.files.loading import Files
     from pvfiblets.web.session.document import Source
 
     path, files = image(tmp_path / "zero.nii", 0, 0), Files(tmp_path)
@@ -183,7 +183,7 @@ def test_the_page_shows_the_warning_of_a_file_it_opens(tmp_path):
 def test_every_use_of_a_file_or_an_image_has_the_rule(tmp_path, use):
     import pvfiblets.images.sources
     import pvfiblets.plotting.fiblets.sources
-    import pvfiblets.plotting.region_sources
+    import pvfiblets.plotting.filtering.region_sources
     import pvfiblets.query.density.voxel_grid
     import pvfiblets.query.painting.painter
     import pvfiblets.slices.image

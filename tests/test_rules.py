@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from collections import Counter
 from graphlib import CycleError, TopologicalSorter
 from importlib.metadata import entry_points
 from itertools import combinations
@@ -158,7 +159,7 @@ def test_one_machine_pays_nothing_for_clusters(tmp_path):
     assert not loaded & {"dask", "distributed", "pyarrow", "fsspec", "pandas", "pvfiblets.cluster.cohort"}
 
 
-MAKERS_OF_SETS = {f"pvfiblets.codec.{name}" for name in ("files.fiblets_file", "join", "shards.write")}
+MAKERS_OF_SETS = {f"pvfiblets.codec.{name}" for name in ("files.fiblets_file", "editing.join", "shards.write")}
 """What methods of `FibletSet` call to open, join and save sets: as with its queries, they stand above the class."""
 
 
@@ -219,3 +220,9 @@ def test_files_that_the_guide_names_exist():
     homes = [ROOT / room for room in ("", "pvfiblets", "pvfiblets/engine/fiblets", "shaders")]
     assert len(names) > 60
     assert [name for name in sorted(names) if not any((home / name).exists() for home in homes)] == []
+
+
+def test_folders_can_be_read_at_a_glance():
+    files = [path for path in (ROOT / "pvfiblets").rglob("*.py") if "__pycache__" not in path.parts]
+    full = {str(home): count for home, count in Counter(path.parent for path in files).items() if count > 20}
+    assert not full, "more than 20 modules in a folder"

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from pvfiblets import synthetic
-from pvfiblets.codec import copies, layout
+from pvfiblets.codec import layout
+from pvfiblets.codec.editing import copies
 from pvfiblets.codec.files import fiblets_format
 from pvfiblets.synthetic import tracking
 

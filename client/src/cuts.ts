@@ -2,7 +2,7 @@
 
 import { Mat, Vec, apply, inverse } from "./camera";
 
-/** A region of the world; pvfiblets/plotting/page_cuts.py makes it. */
+/** A region of the world; pvfiblets/plotting/page/cuts.py makes it. */
 export interface Cut {
   // Held where all planes are not below 0, or in the unit ball of what three rows map to; rows over (x, y, z, 1).
   leaves: { centre: Vec; planes?: number[][]; ball?: number[][] }[];

@@ -20,7 +20,7 @@ from pvfiblets.support.summary import counting
 from pvfiblets.web.values import plain
 
 if TYPE_CHECKING:
-    from pvfiblets.codec.compress import PerPoint
+    from pvfiblets.codec.encoding.compress import PerPoint
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.query.painting.fiblet_index import FibletIndex
 

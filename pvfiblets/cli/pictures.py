@@ -13,8 +13,8 @@ import numpy as np
 
 from pvfiblets import formats
 from pvfiblets.cli.files import print_json
-from pvfiblets.formats.by_vtk import read_dataset
 from pvfiblets.formats.registry import READ_BY_VTK, UnknownFormatError, suffix_of
+from pvfiblets.formats.vtk_files.by_vtk import read_dataset
 from pvfiblets.support.addresses import is_url, path_of
 from pvfiblets.support.whole_files import made_folder, replacing
 from pvfiblets.volumes.freesurfer_files import VALUES
@@ -47,7 +47,7 @@ def screenshot(paths: list[str], *, output: str, size: tuple[int, int], transpar
             made = file.name + suffix
             try:
                 if transparent:
-                    from pvfiblets.plotting.transparent import screenshot as without_background
+                    from pvfiblets.plotting.plotter_methods.transparent import screenshot as without_background
 
                     without_background(plotter, made, return_img=False)
                 elif scene is None:
@@ -66,7 +66,7 @@ def screenshot(paths: list[str], *, output: str, size: tuple[int, int], transpar
 def page(paths: list[str], *, output: str, title: str | None, **looks: Any) -> None:
     """Write files as a page that draws them by itself."""
     from pvfiblets.page.writing import check_name
-    from pvfiblets.plotting.page_scene import export_page
+    from pvfiblets.plotting.page.page_scene import export_page
 
     check_name(output)
     plotter, scene = make_plotter(off_screen=True, size=None), None
@@ -290,7 +290,7 @@ def demo(*, output: str, streamlines: int, step: float, seed: int, json: bool) -
 
 def _show_colourings(plotter: Any, fiblets: FibletSet, brain: Streamlines) -> int:
     """Show a brain from the left, large, and beside it in four colourings; return the bytes of the large one."""
-    from pvfiblets.codec.compress import compress
+    from pvfiblets.codec.encoding.compress import compress
     from pvfiblets.plotting.viewpoints import point_camera
     from pvfiblets.query.bundles.colours import distinct_colours
 

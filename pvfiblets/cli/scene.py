@@ -152,7 +152,7 @@ def _region(shape: Mapping[str, Any], load: Load) -> Any:
 
 def _loader() -> Load:
     """Return what reads the files that shapes are made of, each once."""
-    from pvfiblets.web.scene.loading import Files
+    from pvfiblets.web.scene.files.loading import Files
     from pvfiblets.web.session.store import Store
 
     return Store(Files(None)).shape

@@ -149,7 +149,7 @@ def select(
 
 def _chosen(source: Path, wanted: Any, counts: list[int]) -> Iterator[Streamlines]:
     """Go through a file that is not compressed; its points are looked at as they are."""
-    from pvfiblets.codec.compress import compress
+    from pvfiblets.codec.encoding.compress import compress
     from pvfiblets.streamlines import Streamlines
 
     for chunk in formats.iter_chunks(source, PIECE):

@@ -68,7 +68,7 @@ class FibletSet:
         order than their own; else None, and both are the same.
     exact : numpy.ndarray or None
         ``(n_points, 3)`` float32 or float64, mm, in the order of ranks: the points themselves, of a set that keeps
-        every bit of them (:mod:`pvfiblets.codec.exact`). Its records are for drawing, and are not stored.
+        every bit of them (:mod:`pvfiblets.codec.encoding.exact`). Its records are for drawing, and are not stored.
     per_point : dict of str to PointValues
         Values kept for every point, in the order of ranks (:meth:`in_coded_order`).
     per_streamline, groups, per_group : dict
@@ -297,12 +297,12 @@ class FibletSet:
             yield from chunk
 
     def __add__(self, other: object) -> FibletSet:
-        """Both sets' streamlines, one set behind the other; see :func:`pvfiblets.codec.join.concatenate`."""
+        """Both sets' streamlines, one set behind the other; see :func:`pvfiblets.codec.editing.join.concatenate`."""
         return FibletSet.concatenate([self, other]) if isinstance(other, FibletSet) else NotImplemented
 
     @classmethod
     def concatenate(cls, sets: Iterable[FibletSet]) -> FibletSet:
-        """Put sets behind each other; see :func:`pvfiblets.codec.join.concatenate`.
+        """Put sets behind each other; see :func:`pvfiblets.codec.editing.join.concatenate`.
 
         Parameters
         ----------
@@ -318,7 +318,7 @@ class FibletSet:
         ValueError
             If there is none, or one has data that another lacks.
         """
-        from .join import concatenate
+        from .editing.join import concatenate
 
         return concatenate(sets)
 
@@ -331,7 +331,7 @@ class FibletSet:
             As for :meth:`decompress`. They become streamlines 0, 1, ... of the new set; one that is named again is
             taken once.
         """
-        from .extract import extract
+        from .editing.extract import extract
 
         return extract(self, ids)
 
@@ -620,7 +620,7 @@ class FibletSet:
             write_shards(self, path, shards)
             return []
         if path.suffix and registry.suffix_of(path) != ".fiblets":
-            from .extract import save_as
+            from .editing.extract import save_as
 
             return save_as(self, path)
         save(self, path)

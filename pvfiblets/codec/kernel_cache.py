@@ -26,7 +26,7 @@ def sources_digest(folder: Path = HOME) -> str:
 
 
 def _sources(folder: Path) -> list[Path]:
-    own = [*sorted(HOME.glob("*.py")), *sorted((HOME / "kernels").glob("*.py"))]
+    own = [path for room in ("", "encoding", "kernels") for path in sorted((HOME / room).glob("*.py"))]
     if folder == HOME or HOME in folder.parents:
         return own
     package = HOME.parent

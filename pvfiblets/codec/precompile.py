@@ -19,7 +19,7 @@ def _lines() -> Streamlines:
 def _coders() -> tuple[Any, Any, Any]:
     """A coder of either kind for the same lines, and the chunk's encoder."""
     from .arrays.array_coder import ArrayCoder
-    from .compiled_coder import CompiledCoder
+    from .encoding.compiled_coder import CompiledCoder
     from .parameters import Parameters, survey
 
     lines = _lines()
@@ -54,7 +54,7 @@ def _lattices() -> None:
 
 
 def _decoding() -> None:
-    from .compress import compress
+    from .encoding.compress import compress
     from .small_sets import STATES
 
     fiblets = compress(_lines(), exact=False)  # exact sets are not decoded

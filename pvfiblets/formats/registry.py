@@ -19,17 +19,20 @@ from pvfiblets.errors import FibletsError
 
 _MODULES: dict[str, str] = {
     ".tck": "pvfiblets.formats.tck",
-    ".trk": "pvfiblets.formats.trk",
-    ".trk.gz": "pvfiblets.formats.trk_gz",
+    ".trk": "pvfiblets.formats.trackvis.trk",
+    ".trk.gz": "pvfiblets.formats.trackvis.trk_gz",
     ".trx": "pvfiblets.formats.trx",
-    ".vtk": "pvfiblets.formats.vtk_legacy",
-    ".vtp": "pvfiblets.formats.vtp",
+    ".vtk": "pvfiblets.formats.vtk_files.legacy",
+    ".vtp": "pvfiblets.formats.vtk_files.vtp",
     ".tt.gz": "pvfiblets.formats.tinytrack",
-    ".fib": "pvfiblets.formats.vtk_legacy",
+    ".fib": "pvfiblets.formats.vtk_files.legacy",
     ".fiblets": "pvfiblets.codec.files.fiblets_format",
 }
 READ_BY_VTK = (".vtu", ".pvtu", ".pvtp", ".vtm", ".vtmb", ".vtkhdf")
-_READ_BY_LIBRARIES = {**dict.fromkeys(READ_BY_VTK, "pvfiblets.formats.by_vtk"), ".dpy": "pvfiblets.formats.dpy"}
+_READ_BY_LIBRARIES = {
+    **dict.fromkeys(READ_BY_VTK, "pvfiblets.formats.vtk_files.by_vtk"),
+    ".dpy": "pvfiblets.formats.dpy",
+}
 """Not for files of strangers: VTK and HDF5 trust their sizes, and VTK opens the files that they name."""
 
 

@@ -39,7 +39,7 @@ from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import forget
 from pvfiblets.formats.rows import finite, without_rows
 from pvfiblets.formats.scratch import is_long
-from pvfiblets.formats.trk_header import along_affine
+from pvfiblets.formats.trackvis.header import along_affine
 from pvfiblets.formats.ziparrays import ArrayEntry, FolderArrays, ZipArrays
 from pvfiblets.streamlines import Streamlines, blocks
 from pvfiblets.support.whole_files import replacing

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
-from pvfiblets.formats.vtk_sizes import stated_bytes
-from pvfiblets.formats.vtk_xml import Element, XmlFile
+from pvfiblets.formats.vtk_files.sizes import stated_bytes
+from pvfiblets.formats.vtk_files.xml_arrays import Element, XmlFile
 from pvfiblets.support.memory import check_room
 
 from .image import Image

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from pvfiblets.mappers.engine_options import EngineOptions
     from pvfiblets.mappers.fiblets import FibletMapper
     from pvfiblets.mappers.halos import HaloMapper, HaloOptions
-    from pvfiblets.mappers.readable_lines import readable
     from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
     from pvfiblets.mappers.volumes import RayHit, VolumeMapper
-    from pvfiblets.mappers.vtk_overrides import follow
+    from pvfiblets.mappers.vtk_pipeline.readable_lines import readable
+    from pvfiblets.mappers.vtk_pipeline.vtk_overrides import follow
 
 
 __all__ = [
@@ -45,8 +45,8 @@ _HOME = {
     "VolumeMapper": "volumes",
     "TubeMapper": "tubes",
     "TubeOptions": "tubes",
-    "follow": "vtk_overrides",
-    "readable": "readable_lines",
+    "follow": "vtk_pipeline.vtk_overrides",
+    "readable": "vtk_pipeline.readable_lines",
 }
 
 __getattr__, __dir__ = names_from(__name__, _HOME)

@@ -35,7 +35,7 @@ class Colouring:
     """
 
     # One of `pvfiblets.colour_modes.MODES`. `values` holds numbers or colours of lines, `source` names the array of
-    # points; `lut` is the table. ``'pixel_count'`` is of fiblets with a `pvfiblets.mappers.density.Density`.
+    # points; `lut` is the table. ``'pixel_count'`` is of fiblets with a `pvfiblets.mappers.effects.density.Density`.
     mode: str = "orientation"
     # RGB between 0 and 1, for ``'solid'``; None for black on a light background and white on a dark one
     color: tuple[float, ...] | None = (1.0, 1.0, 1.0)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.codec.point_arrays import colour_columns, packed_colours
+from pvfiblets.codec.editing.point_arrays import colour_columns, packed_colours
 from pvfiblets.colour_modes import MODES
 from pvfiblets.mappers.line_data import COLOURS, RADIUS, STEPS, LineData, segment_ids
 

@@ -1,7 +1,7 @@
 """`EngineMapper`: what an engine draws, as geometry of an ordinary VTK actor.
 
-VTK draws one triangle that covers the viewport (`pvfiblets.mappers.proxy`) with its own program, in which
-pieces of GLSL (`pvfiblets.mappers.resolve`) read the engine's G-buffer. From inside that draw VTK fires
+VTK draws one triangle that covers the viewport (`pvfiblets.mappers.vtk_pipeline.proxy`) with its own program, in which
+pieces of GLSL (`pvfiblets.mappers.effects.resolve`) read the engine's G-buffer. From inside that draw VTK fires
 ``UpdateShaderEvent``: the mapper, observing itself, has the engine bring the G-buffer up to date for the
 camera, viewport and pass of that very moment, and hands the program its uniforms.
 """
@@ -21,17 +21,15 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 
 from pvfiblets.engine.view import MAX_CLIP_PLANES, Style, View
-from pvfiblets.mappers.active_renderer import ActiveRenderer
-from pvfiblets.mappers.actor_link import ActorLink
 from pvfiblets.mappers.colouring import Colouring
-from pvfiblets.mappers.connection import Connection
-from pvfiblets.mappers.depth_peeling import layers_of, with_layers
+from pvfiblets.mappers.effects.depth_peeling import layers_of, with_layers
+from pvfiblets.mappers.effects.line_tubes import thickened, thickness_of
+from pvfiblets.mappers.effects.shader_effects import Draw, MapperEffect, prepare_effects, set_effect_uniforms, styled
+from pvfiblets.mappers.effects.shading import ink_on
+from pvfiblets.mappers.effects.uniforms import resolve_textures, set_uniforms
 from pvfiblets.mappers.engine_options import Options
-from pvfiblets.mappers.line_tubes import thickened, thickness_of
-from pvfiblets.mappers.picking import Drawn
-from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.readable_lines import LineReading, readable_mapper
-from pvfiblets.mappers.scene import (
+from pvfiblets.mappers.frames.active_renderer import ActiveRenderer
+from pvfiblets.mappers.frames.scene import (
     Frame,
     actors_in,
     frame_of,
@@ -45,11 +43,8 @@ from pvfiblets.mappers.scene import (
     to_array,
     world_planes,
 )
-from pvfiblets.mappers.shader_effects import Draw, MapperEffect, prepare_effects, set_effect_uniforms, styled
-from pvfiblets.mappers.shading import ink_on
-from pvfiblets.mappers.shifted_cameras import is_shifted
-from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
-from pvfiblets.mappers.windows import (
+from pvfiblets.mappers.frames.shifted_cameras import is_shifted
+from pvfiblets.mappers.frames.windows import (
     Slot,
     WindowContext,
     context_of,
@@ -58,13 +53,18 @@ from pvfiblets.mappers.windows import (
     make_current_again,
     weak,
 )
+from pvfiblets.mappers.picking import Drawn
+from pvfiblets.mappers.vtk_pipeline.actor_link import ActorLink
+from pvfiblets.mappers.vtk_pipeline.connection import Connection
+from pvfiblets.mappers.vtk_pipeline.proxy import proxy_polydata
+from pvfiblets.mappers.vtk_pipeline.readable_lines import LineReading, readable_mapper
 
 if TYPE_CHECKING:
     import moderngl
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
     from pvfiblets.mappers.line_data import LineData
-    from pvfiblets.mappers.vtk_input import VtkInput
+    from pvfiblets.mappers.vtk_pipeline.vtk_input import VtkInput
 
 _ONE_ACTOR = "give each actor a mapper of its own (mapper.ShallowCopy(other) shares the data)"
 
@@ -193,7 +193,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         return dict(self._effects)
 
     def set_effect(self, name: str, effect: MapperEffect | None) -> None:
-        """Set or, with None, take away one of the looks beside the colours (`pvfiblets.mappers.shader_effects`)."""
+        """Set or, with None, take away a look beside the colours (`pvfiblets.mappers.effects.shader_effects`)."""
         if effect is None:
             self._effects.pop(name, None)
         else:
@@ -312,7 +312,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         with context.foreign():
             engine = self._engine(context, slot)
             if hasattr(engine, "patience"):
-                from pvfiblets.mappers.streaming import pace
+                from pvfiblets.mappers.frames.streaming import pace
 
                 pace(engine, renderer)
             if smoother is not None and smoother.layer is not None:
@@ -454,7 +454,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         """Return what a picture of some data depends on beside them."""
         if not self._follows:
             return ()
-        from pvfiblets.mappers.vtk_scalars import state_of
+        from pvfiblets.mappers.vtk_pipeline.vtk_scalars import state_of
 
         return self._property_color(), *state_of(self, data)
 
@@ -531,11 +531,11 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         """Return VTK's own class, or what views in browsers know mappers of this package by."""
         if "trame_vtk.modules.vtk.serializers.registry" not in sys.modules:
             return str(super().GetClassName())
-        from pvfiblets.mappers.browser_views import class_name
+        from pvfiblets.mappers.vtk_pipeline.browser_views import class_name
 
         return class_name(readable_mapper)
 
-    # Real lines, for VTK's code that reads data (`pvfiblets.mappers.readable_lines`)
+    # Real lines, for VTK's code that reads data (`pvfiblets.mappers.vtk_pipeline.readable_lines`)
 
     @property
     def is_readable(self) -> bool:

@@ -12,13 +12,13 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 from pvfiblets.engine.fiblets.style import LARGEST_DISC, FibletStyle
 from pvfiblets.engine.view import Style, View
 from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.effects.shader_effects import ShaderEffect
 from pvfiblets.mappers.engine_mapper import FilteredMapper
 from pvfiblets.mappers.engine_options import EngineOptions, engine_renderer
+from pvfiblets.mappers.frames.scene import Frame, frame_of, slack, smoothers, wanted_share
+from pvfiblets.mappers.frames.windows import Slot, WindowContext, contexts_with
 from pvfiblets.mappers.line_data import SIDES
 from pvfiblets.mappers.picking import nearest_pixel
-from pvfiblets.mappers.scene import Frame, frame_of, slack, smoothers, wanted_share
-from pvfiblets.mappers.shader_effects import ShaderEffect
-from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
 from pvfiblets.query.selection.point_flags import Sampling
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class FibletMapper(FilteredMapper[EngineOptions]):
         active scalars, or in the colour of the actor's property.
     line_width : float, optional
         Pixels of the window, above 0; that of the actor's property when left out. Lines thinner than a pixel are drawn
-        a pixel wide, and fainter where edges are smoothed (`pvfiblets.mappers.antialias_coverage`).
+        a pixel wide, and fainter where edges are smoothed (`pvfiblets.mappers.picture.antialias_coverage`).
     compression : mapping, optional
         Arguments of `pvfiblets.compress` for connected data.
     options : EngineOptions, optional
@@ -161,7 +161,7 @@ class FibletMapper(FilteredMapper[EngineOptions]):
         return 2.0 * style.radius * frame.least_scale(self._drawn.bounds) < style.min_width
 
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:
-        from pvfiblets.mappers.vtk_lines import fiblets_of, geometry_of, painted_fiblets
+        from pvfiblets.mappers.vtk_pipeline.vtk_lines import fiblets_of, geometry_of, painted_fiblets
 
         shape = geometry_of(data)
         if self._compressed[0] != shape:

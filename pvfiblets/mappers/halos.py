@@ -15,13 +15,13 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.halos import HaloLines
 from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.effects.line_tubes import thickened
+from pvfiblets.mappers.effects.shader_effects import Draw, ShaderEffect
+from pvfiblets.mappers.effects.shading import background
 from pvfiblets.mappers.engine_mapper import FilteredMapper
 from pvfiblets.mappers.engine_options import Options
-from pvfiblets.mappers.line_tubes import thickened
+from pvfiblets.mappers.frames.scene import Frame
 from pvfiblets.mappers.picking import nearest_pixel
-from pvfiblets.mappers.scene import Frame
-from pvfiblets.mappers.shader_effects import Draw, ShaderEffect
-from pvfiblets.mappers.shading import background
 
 if TYPE_CHECKING:
     import moderngl
@@ -57,7 +57,7 @@ def halo_renderer(ctx: moderngl.Context, drawn: Any, **options: Any) -> Any:
 
 @dataclass(frozen=True)
 class Strips(ShaderEffect):
-    """A `pvfiblets.mappers.shader_effects.MapperEffect` that colours the halos in the G-buffer."""
+    """A `pvfiblets.mappers.effects.shader_effects.MapperEffect` that colours the halos in the G-buffer."""
 
     color: Colour | None = WHITE  # RGB between 0 and 1; None for the renderer's background, which may be a gradient
     features = frozenset({"strip"})
@@ -207,7 +207,7 @@ class HaloMapper(FilteredMapper[HaloOptions]):
         return self._within_cuts(found).to_polydata(segments=segments and lines, vertices=not lines)
 
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:
-        from pvfiblets.mappers.vtk_lines import measured_look, painted_halos
+        from pvfiblets.mappers.vtk_pipeline.vtk_lines import measured_look, painted_halos
 
         drawn, colouring = painted_halos(data, self)
         if self._measured:

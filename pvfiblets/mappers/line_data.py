@@ -1,7 +1,8 @@
 """`LineData`: lines in float64 with data of points, cut, thinned and made into PolyData of VTK's own.
 
-What the engine draws lies on the GPU, and VTK is connected to a few triangles (`pvfiblets.mappers.proxy`). Exporters,
-pickers and views in browsers read VTK's data: they get these lines instead (`pvfiblets.mappers.readable_lines`).
+What the engine draws lies on the GPU, and VTK is connected to a few triangles (`pvfiblets.mappers.vtk_pipeline.proxy`).
+Exporters, pickers and views in browsers read VTK's data: they get these lines instead
+(`pvfiblets.mappers.vtk_pipeline.readable_lines`).
 """
 
 from __future__ import annotations

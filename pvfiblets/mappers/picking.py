@@ -15,8 +15,8 @@ import numpy.typing as npt
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray
 
-from pvfiblets.mappers.shifted_cameras import with_exact_depths
-from pvfiblets.mappers.windows import WindowContext, contexts_with
+from pvfiblets.mappers.frames.shifted_cameras import with_exact_depths
+from pvfiblets.mappers.frames.windows import WindowContext, contexts_with
 
 if TYPE_CHECKING:
     import moderngl

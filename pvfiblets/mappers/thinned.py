@@ -1,4 +1,4 @@
-"""Some of a large set's streamlines, for frames of reduced detail (`pvfiblets.mappers.scene.reduce_detail`).
+"""Some of a large set's streamlines, for frames of reduced detail (`pvfiblets.mappers.frames.scene.reduce_detail`).
 
 Where lines hide each other, most of a set is decoded and tested in vain, and fewer pixels do not help. An even share of
 the streamlines, always the same one, lies on the GPU beside the set from the first such frame on. What is filtered,
@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.engine.errors import GPUMemoryError
-from pvfiblets.mappers.scene import wanted_share
+from pvfiblets.mappers.frames.scene import wanted_share
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet

@@ -14,12 +14,12 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.tubes import TubeStyle, check_choices
 from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.effects.line_tubes import SurfaceNormals
 from pvfiblets.mappers.engine_mapper import FilteredMapper
 from pvfiblets.mappers.engine_options import Options
+from pvfiblets.mappers.frames.scene import Frame
 from pvfiblets.mappers.line_data import SIDES, STEPS
-from pvfiblets.mappers.line_tubes import SurfaceNormals
 from pvfiblets.mappers.picking import nearest_pixel
-from pvfiblets.mappers.scene import Frame
 
 if TYPE_CHECKING:
     import moderngl
@@ -125,7 +125,7 @@ class TubeMapper(FilteredMapper[TubeOptions]):
         return lines.to_polydata(segments=True) if segments else tube_surface(lines)
 
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:
-        from pvfiblets.mappers.vtk_lines import painted_tubes
+        from pvfiblets.mappers.vtk_pipeline.vtk_lines import painted_tubes
 
         return painted_tubes(data, self._shape, self)
 

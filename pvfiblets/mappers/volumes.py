@@ -18,13 +18,13 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.gbuffer import EMPTY
 from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.effects.line_tubes import SurfaceNormals
+from pvfiblets.mappers.effects.volume_lamps import OwnLight, shading_of
 from pvfiblets.mappers.engine_mapper import CutMapper
 from pvfiblets.mappers.engine_options import Options
-from pvfiblets.mappers.line_tubes import SurfaceNormals
+from pvfiblets.mappers.frames.scene import in_motion, others_opaque
+from pvfiblets.mappers.frames.windows import Slot, WindowContext
 from pvfiblets.mappers.picking import PixelHit, nearest_pixel
-from pvfiblets.mappers.scene import in_motion, others_opaque
-from pvfiblets.mappers.volume_lamps import OwnLight, shading_of
-from pvfiblets.mappers.windows import Slot, WindowContext
 
 if TYPE_CHECKING:
     import moderngl
@@ -111,7 +111,7 @@ class VolumeMapper(CutMapper[Options]):
         return self._casting, *super()._input_state(data)
 
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:
-        from pvfiblets.mappers.vtk_scalars import paint_of
+        from pvfiblets.mappers.vtk_pipeline.vtk_scalars import paint_of
         from pvfiblets.volumes import as_raycast_volume
 
         if self._taken[0] != data.GetMTime():

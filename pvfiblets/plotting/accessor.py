@@ -11,7 +11,7 @@ from pvfiblets.plotting.fiblets.sources import as_fiblets
 from pvfiblets.streamlines import Streamlines
 
 if TYPE_CHECKING:
-    from pvfiblets.codec.compress import PerPoint
+    from pvfiblets.codec.encoding.compress import PerPoint
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.query.density.density_map import DensityMap
 
@@ -65,7 +65,7 @@ class FibletsAccessor:
         progress : bool, default: False
             Show a progress bar.
         **options
-            Further arguments of :func:`pvfiblets.codec.compress`.
+            Further arguments of :func:`pvfiblets.codec.encoding.compress`.
 
         Returns
         -------

@@ -24,7 +24,7 @@ Faces = npt.NDArray[np.int64]
 
 def cut_surface(surface: Any, region: Any) -> pv.PolyData:
     """Return the part of a surface that lies in a region."""
-    from pvfiblets.plotting.region_sources import as_region
+    from pvfiblets.plotting.filtering.region_sources import as_region
 
     region = as_region(region)
     if surface.GetNumberOfPolys() + surface.GetNumberOfStrips() == 0:

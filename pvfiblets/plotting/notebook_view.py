@@ -16,7 +16,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets.plotting.page_scene import camera_place, page_and_actors
+from pvfiblets.plotting.page.page_scene import camera_place, page_and_actors
 from pvfiblets.plotting.viewpoints import point_camera
 
 if TYPE_CHECKING:

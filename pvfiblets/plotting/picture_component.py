@@ -15,15 +15,15 @@ import pyvista as pv
 
 from pvfiblets.antialias import check_antialias, default_antialias, samples_of
 from pvfiblets.engine.effects.tone import Tone
-from pvfiblets.mappers.antialias_refinement import Refinement
-from pvfiblets.mappers.antialias_windows import refine
 from pvfiblets.mappers.engine_mapper import shows_engine
-from pvfiblets.mappers.picture import DepthOfField, Picture
-from pvfiblets.mappers.scene import partly_shown
+from pvfiblets.mappers.frames.idle_windows import refine
+from pvfiblets.mappers.frames.scene import partly_shown
+from pvfiblets.mappers.picture.antialias_refinement import Refinement
+from pvfiblets.mappers.picture.picture import DepthOfField, Picture
 from pvfiblets.plotting.antialias_pacing import Pacer
 from pvfiblets.plotting.components import register
-from pvfiblets.plotting.setting_places import OWN, Place
-from pvfiblets.plotting.settings import Setting, number
+from pvfiblets.plotting.settings.places import OWN, Place
+from pvfiblets.plotting.settings.settings import Setting, number
 
 TONE = ("operator", "exposure", "white")
 """Settings of :attr:`PictureComponent.tone`; the other changes of colours are attributes of their own."""

@@ -8,8 +8,9 @@ import pyvista as pv
 from pyvista.core._typing_core import TransformLike
 from pyvista.plotting._typing import ColorLike, ColormapOptions
 
-from pvfiblets.codec.compress import PerPoint
+from pvfiblets.codec.encoding.compress import PerPoint
 from pvfiblets.halos.displacement import Displacement
+from pvfiblets.plotting.colours.same_names import Preference
 from pvfiblets.plotting.connectomes.component import ConnectomesComponent
 from pvfiblets.plotting.connectomes.component import Labels as ConnectomesLabels, Matrix as ConnectomesMatrix
 from pvfiblets.plotting.connectomes.graph import ConnectomeGraph
@@ -21,7 +22,6 @@ from pvfiblets.plotting.halos.component import HaloLinesComponent, HaloPointsCom
 from pvfiblets.plotting.halos.component import LineSource as HaloLinesSource, PointSource as HaloPointsSource
 from pvfiblets.plotting.halos.style import Threshold
 from pvfiblets.plotting.picture_component import PictureComponent
-from pvfiblets.plotting.same_names import Preference
 from pvfiblets.plotting.slices.component import SlicesComponent
 from pvfiblets.plotting.slices.component import Source as SlicesSource
 from pvfiblets.plotting.slices.stack import SliceStack

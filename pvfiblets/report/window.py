@@ -38,7 +38,7 @@ class Window:
 
     def show(self) -> None:
         """Open the window, and find the clock that measures its frames."""
-        from pvfiblets.mappers.windows import borrowed_context
+        from pvfiblets.mappers.frames.windows import borrowed_context
 
         self.plotter.show(auto_close=False)
         with borrowed_context(self.plotter.render_window) as ctx:

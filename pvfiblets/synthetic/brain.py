@@ -1,8 +1,8 @@
 """Brain-like tractograms in compressed form, of any size.
 
 Some ten thousand streamlines are tracked (:mod:`.tracking`), turned by a few degrees into a few variants, and coded:
-the *pool*. All others are copies of the pool's, moved by a few millimetres (:mod:`pvfiblets.codec.copies`), so that
-bundles stay bundles, fan, and end in the cortex, and a copy costs no more than its bytes.
+the *pool*. All others are copies of the pool's, moved by a few millimetres (:mod:`pvfiblets.codec.editing.copies`), so
+that bundles stay bundles, fan, and end in the cortex, and a copy costs no more than its bytes.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from pvfiblets.support.progress_bar import progress_bar
 from .tracking import BUNDLES, iter_brain_streamlines
 
 if TYPE_CHECKING:
+    from pvfiblets.codec.encoding.ordering import Order
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.codec.ordering import Order
 
 TRACKED = 16_384  # streamlines tracked, where steps are 0.1 mm or longer; fewer of shorter steps: equal points in all
 TURNS = 4  # variants of each, the first as tracked
@@ -51,7 +51,7 @@ def brain(
         The same seed gives the same set.
     order : {'input', 'hilbert'}, default: 'input'
         'input' mixes bundles, as whole-brain tracking does. 'hilbert' puts the same streamlines along a space-filling
-        curve (:mod:`pvfiblets.codec.ordering`), so that pages are compact in space.
+        curve (:mod:`pvfiblets.codec.encoding.ordering`), so that pages are compact in space.
     path : str or PathLike, optional
         A ``.fiblets`` file to write page by page, in memory that does not grow with it.
     progress : bool, default: False
@@ -79,9 +79,9 @@ def brain(
 
     Tracking, turning and coding take up to half a minute and 2 GB, copying some seconds for 10^9 segments.
     """
-    from pvfiblets.codec.compress import compress
-    from pvfiblets.codec.copies import Copies
-    from pvfiblets.codec.ordering import check_order
+    from pvfiblets.codec.editing.copies import Copies
+    from pvfiblets.codec.encoding.compress import compress
+    from pvfiblets.codec.encoding.ordering import check_order
 
     check_order(order)
 
@@ -107,11 +107,11 @@ def _pool(
     tracked: list[Streamlines], turns: int, seed: int, progress: bool
 ) -> tuple[FibletSet, npt.NDArray[np.float64], npt.NDArray[np.int64]]:
     """Code all variants, on a grid with room for moves; the box of each, ``(n, 6)`` mm; their order on the curve."""
-    from pvfiblets.codec.encode import Encoder
+    from pvfiblets.codec.encoding.encode import Encoder
+    from pvfiblets.codec.encoding.ordering import ends_order
+    from pvfiblets.codec.encoding.record_writer import join
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.codec.ordering import ends_order
     from pvfiblets.codec.parameters import Parameters, bounds_of, survey
-    from pvfiblets.codec.record_writer import join
 
     found = survey(_variants(tracked, turns, seed))
     bounds = bounds_of(found)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from pvfiblets.web.scene.loading import Cancelled, Watch
+from pvfiblets.web.scene.files.loading import Cancelled, Watch
 from pvfiblets.web.session.document import LINES
 
 

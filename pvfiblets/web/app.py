@@ -16,25 +16,25 @@ from typing import Any
 from trame.app import TrameApp
 
 from pvfiblets.web.panels import describe, layout
-from pvfiblets.web.panels.atlas_tab import AtlasActions
-from pvfiblets.web.panels.bundle_finding import FindingActions
-from pvfiblets.web.panels.bundle_measures import MeasureActions
-from pvfiblets.web.panels.bundles_tab import BundleActions
-from pvfiblets.web.panels.clip_tab import CutActions
 from pvfiblets.web.panels.csv_tables import selection_csv
-from pvfiblets.web.panels.exporting import ExportActions
-from pvfiblets.web.panels.filter_regions import RegionActions
-from pvfiblets.web.panels.filter_tab import FilterActions
-from pvfiblets.web.panels.info_tables import tables
+from pvfiblets.web.panels.files.exporting import ExportActions
+from pvfiblets.web.panels.files.opening import FileActions
 from pvfiblets.web.panels.matrix_panel import MatrixActions
-from pvfiblets.web.panels.opening import FileActions
-from pvfiblets.web.panels.painting_tab import PaintActions
-from pvfiblets.web.panels.selection_tab import SelectionActions
-from pvfiblets.web.panels.slices_tab import SliceActions
 from pvfiblets.web.panels.sliders import SlideActions
-from pvfiblets.web.scene.confined import Confined
+from pvfiblets.web.panels.tabs.atlas_tab import AtlasActions
+from pvfiblets.web.panels.tabs.bundle_finding import FindingActions
+from pvfiblets.web.panels.tabs.bundle_measures import MeasureActions
+from pvfiblets.web.panels.tabs.bundles_tab import BundleActions
+from pvfiblets.web.panels.tabs.clip_tab import CutActions
+from pvfiblets.web.panels.tabs.filter_regions import RegionActions
+from pvfiblets.web.panels.tabs.filter_tab import FilterActions
+from pvfiblets.web.panels.tabs.info_tables import tables
+from pvfiblets.web.panels.tabs.painting_tab import PaintActions
+from pvfiblets.web.panels.tabs.selection_tab import SelectionActions
+from pvfiblets.web.panels.tabs.slices_tab import SliceActions
+from pvfiblets.web.scene.files.confined import Confined
 from pvfiblets.web.scene.scene import Scene
-from pvfiblets.web.scene.slicing import VIEWS, ready_views
+from pvfiblets.web.scene.slices.slicing import VIEWS, ready_views
 from pvfiblets.web.server.options import Options
 from pvfiblets.web.server.rpc_allowlist import EXPECTED, AllowedCalls, sentence
 from pvfiblets.web.server.scratch import Notes

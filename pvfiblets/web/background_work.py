@@ -13,7 +13,7 @@ from pvfiblets.support import memory
 from pvfiblets.web.actions import Actions
 
 if TYPE_CHECKING:
-    from pvfiblets.web.scene.loading import Cancel, Progress
+    from pvfiblets.web.scene.files.loading import Cancel, Progress
 
     Work = Callable[[Progress, Cancel], Any]
 

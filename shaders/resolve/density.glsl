@@ -1,4 +1,4 @@
-// Density: light adds up where lines lie on each other (pvfiblets/mappers/density.py). A pixel shows the mean colour of its n
+// Density: light adds up where lines lie on each other (pvfiblets/mappers/effects/density.py). A pixel shows the mean colour of its n
 // lines; its opacity over the background depends on n:
 //
 //   log      log(1 + n) / log(1 + m)       m: lines in a pixel of full brightness

@@ -23,7 +23,7 @@ from pvfiblets.engine.fiblets.parts.cluster_renderer import ClusterRenderer, _cl
 from pvfiblets.engine.fiblets.parts.sparse_picture import SparsePicture, nearer
 from pvfiblets.report.studies.stability.render_checks import camera
 from pvfiblets.web.scene.scene import Scene
-from pvfiblets.web.scene.slicing import ready_views
+from pvfiblets.web.scene.slices.slicing import ready_views
 from tests.engine.pictures import SIZE, assert_alike, brain_with_gaps, read
 
 pytestmark = pytest.mark.more

@@ -2,7 +2,8 @@
 
 from contextlib import contextmanager
 
-from pvfiblets.codec import decompress, encode, parameters
+from pvfiblets.codec import decompress, parameters
+from pvfiblets.codec.encoding import encode
 
 
 @contextmanager

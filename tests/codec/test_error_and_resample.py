@@ -5,8 +5,8 @@ import pytest
 
 import pvfiblets as pf
 from pvfiblets.codec.decompress import iter_chunks
+from pvfiblets.codec.encoding.resample import resample
 from pvfiblets.codec.point_values import code_values
-from pvfiblets.codec.resample import resample
 from pvfiblets.streamlines import Streamlines
 
 from .samples import smooth, wandering

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pvfiblets.codec import direction_codebook, layout, nearest
+from pvfiblets.codec import direction_codebook, layout
+from pvfiblets.codec.kernels import nearest
 
 from . import reference
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import pvfiblets as pf
-from pvfiblets.codec import layout, ordering
+from pvfiblets.codec import layout
+from pvfiblets.codec.encoding import ordering
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 import pvfiblets as pf
 from pvfiblets.cli.command import main
+from pvfiblets.codec.encoding.resample import resample
 from pvfiblets.codec.kernels.line_distance import line_distances
-from pvfiblets.codec.resample import resample
 from pvfiblets.formats import write
 from pvfiblets.streamlines import Streamlines
 

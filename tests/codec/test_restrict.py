@@ -9,7 +9,7 @@ from hypothesis import given
 
 import pvfiblets as pf
 from pvfiblets.codec import layout
-from pvfiblets.codec.restrict import even_share, restrict
+from pvfiblets.codec.editing.restrict import even_share, restrict
 from pvfiblets.streamlines import Streamlines
 
 from .samples import extremes, noisy, smooth, wandering

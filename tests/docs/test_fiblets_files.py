@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pvfiblets.codec.compress import compress
+from pvfiblets.codec.encoding.compress import compress
 from pvfiblets.codec.layout import unpack
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines

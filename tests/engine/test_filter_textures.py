@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import Streamlines, compress
-from pvfiblets.codec.restrict import restrict
+from pvfiblets.codec.editing.restrict import restrict
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.fiblets.data.filter_textures import Filter, FilterTextures

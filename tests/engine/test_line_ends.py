@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import Streamlines, compress, regions
-from pvfiblets.codec.restrict import restrict
+from pvfiblets.codec.editing.restrict import restrict
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.data import chunks
 from pvfiblets.engine.fiblets.data.filter_textures import Filter

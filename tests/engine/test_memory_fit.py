@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import FibletSet, Streamlines, compress
-from pvfiblets.codec.restrict import even_share, restrict
+from pvfiblets.codec.editing.restrict import even_share, restrict
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.fiblets import renderer

@@ -10,14 +10,15 @@ import numpy as np
 import pytest
 
 from pvfiblets import formats
-from pvfiblets.codec import encode, parameters
-from pvfiblets.codec.encode import Encoder
+from pvfiblets.codec import parameters
+from pvfiblets.codec.encoding import encode
+from pvfiblets.codec.encoding.encode import Encoder
+from pvfiblets.codec.encoding.record_writer import join
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.files import convert
 from pvfiblets.codec.files.convert import compress_file
 from pvfiblets.codec.files.file_error import measure_file_error
 from pvfiblets.codec.parameters import Parameters, survey
-from pvfiblets.codec.record_writer import join
 from pvfiblets.formats import scratch
 from pvfiblets.streamlines import Streamlines
 

@@ -12,7 +12,7 @@ from nibabel.streamlines.trk import TrkFile
 
 from pvfiblets import formats
 from pvfiblets.errors import FormatError
-from pvfiblets.formats import trk
+from pvfiblets.formats.trackvis import trk
 from pvfiblets.invalid_points import CUT, NONFINITE
 from pvfiblets.streamlines import Streamlines
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from pvfiblets import formats
 from pvfiblets.errors import FormatError
-from pvfiblets.formats import vtk_parser
+from pvfiblets.formats.vtk_files import legacy_parser
 from pvfiblets.invalid_points import CUT, NONFINITE
 from pvfiblets.lines import gather
 from pvfiblets.other_libraries import streamlines_of
@@ -245,7 +245,7 @@ def test_nonfinite_points_and_a_last_number_without_newline_are_reported(tmp_pat
     assert CUT not in s.dropped
     whole = (OLD % b"").split(b"POINT_DATA")[0].rstrip()
     path.write_bytes(whole)
-    assert formats.read(path).dropped[vtk_parser.LAST_NUMBER] == 1
+    assert formats.read(path).dropped[legacy_parser.LAST_NUMBER] == 1
 
 
 @pytest.mark.parametrize(

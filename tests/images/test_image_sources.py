@@ -13,7 +13,7 @@ from pvfiblets.errors import FormatError
 from pvfiblets.images.image import Image
 from pvfiblets.images.sources import as_image, is_image
 from pvfiblets.plotting.fiblets.sources import as_volume
-from pvfiblets.plotting.region_sources import as_region
+from pvfiblets.plotting.filtering.region_sources import as_region
 from pvfiblets.query.density.voxel_grid import grid_like
 from pvfiblets.query.painting.painter import RegionPainter
 from pvfiblets.query.regions.region_text import parse_region

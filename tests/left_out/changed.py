@@ -75,7 +75,7 @@ CHANGED = {
         buffers="fibletSumFloats (none), gathered",
         modules="""
             engine.fiblets.gather.gatherer, engine.fiblets.gather.gathering, engine.fiblets.gather.paint,
-            mappers.gathering, mappers.scene_state, mappers.slices
+            mappers.effects.gathering, mappers.frames.scene_state, mappers.effects.slices
         """,
     ),
     "opacity, the nearest": What(),
@@ -87,7 +87,7 @@ CHANGED = {
         buffers="fibletSumFloats (none), gathered",
         modules="""
             engine.fiblets.gather.gatherer, engine.fiblets.gather.gathering, engine.fiblets.gather.paint,
-            mappers.density, mappers.gathering, mappers.scene_state
+            mappers.effects.density, mappers.effects.gathering, mappers.frames.scene_state
         """,
     ),
     "density, by a map": What(
@@ -98,7 +98,7 @@ CHANGED = {
         buffers="fibletSumFloats (none), colour_table, gathered",
         modules="""
             engine.fiblets.gather.gatherer, engine.fiblets.gather.gathering, engine.fiblets.gather.paint,
-            mappers.density, mappers.gathering, mappers.scene_state
+            mappers.effects.density, mappers.effects.gathering, mappers.frames.scene_state
         """,
     ),
     "layers": What(
@@ -255,7 +255,7 @@ CHANGED = {
         """,
         features="EDGES, PICTURE_ALIKE, PICTURE_SAMPLES, WIDE_LINES",
         buffers="coverage, refinement",
-        modules="engine.effects.antialias_coverage, mappers.antialias_coverage, plotting.picture_component",
+        modules="engine.effects.antialias_coverage, mappers.picture.antialias_coverage, plotting.picture_component",
     ),
     "picture: refined, moving": What(
         ran="""
@@ -264,7 +264,7 @@ CHANGED = {
         """,
         features="EDGES, PICTURE_ALIKE, PICTURE_SAMPLES",
         buffers="coverage",
-        modules="engine.effects.antialias_coverage, mappers.antialias_coverage, plotting.picture_component",
+        modules="engine.effects.antialias_coverage, mappers.picture.antialias_coverage, plotting.picture_component",
     ),
     "picture: tone": What(
         ran="screen/triangle.vert, effects/picture/copy.frag, effects/picture/tone.frag",
@@ -383,6 +383,6 @@ CHANGED = {
         resolve="-colour_point_scalar, -point_value, colour_solid, ray_occlusion, tube_normal",
         passes="mean ray occlusion (effect), ray occlusion (effect)",
         buffers="-colour_table, mean ray occlusion (effect), ray occlusion (effect)",
-        modules="engine.volumes.ray_occlusion, mappers.ray_occlusion",
+        modules="engine.volumes.ray_occlusion, mappers.effects.ray_occlusion",
     ),
 }

@@ -10,9 +10,10 @@ import pytest
 import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
-from pvfiblets.codec.compress import compress
-from pvfiblets.mappers import FibletMapper, windows
+from pvfiblets.codec.encoding.compress import compress
+from pvfiblets.mappers import FibletMapper
 from pvfiblets.mappers.fiblets import engine_renderer
+from pvfiblets.mappers.frames import windows
 from pvfiblets.streamlines import Streamlines
 
 

@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkLookupTable
 
-from pvfiblets.mappers import Colouring, windows
+from pvfiblets.mappers import Colouring
+from pvfiblets.mappers.frames import windows
 
 VTK_COLOR_MODE_MAP_SCALARS = 1
 RAINBOW = np.array(

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.mappers import Colouring, windows
-from pvfiblets.mappers.depth_peeling import Layers
-from pvfiblets.mappers.line_tubes import Tubes, TubeShading
-from pvfiblets.mappers.shading import Halos
+from pvfiblets.mappers import Colouring
+from pvfiblets.mappers.effects.depth_peeling import Layers
+from pvfiblets.mappers.effects.line_tubes import Tubes, TubeShading
+from pvfiblets.mappers.effects.shading import Halos
+from pvfiblets.mappers.frames import windows
 from pvfiblets.streamlines import Streamlines
 
 COLOURS = np.array([[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 0], [255, 0, 255]], np.uint8)

@@ -7,8 +7,8 @@ import pytest
 import pyvista as pv
 
 from pvfiblets.engine import pieces
-from pvfiblets.mappers.incremental_frame import draw_in_pieces
-from pvfiblets.mappers.windows import contexts_with
+from pvfiblets.mappers.frames.incremental_frame import draw_in_pieces
+from pvfiblets.mappers.frames.windows import contexts_with
 from pvfiblets.synthetic import brain_streamlines
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.mappers.scene import lenses
+from pvfiblets.mappers.frames.scene import lenses
 
 SIZE, FAR, FRONT = (200, 150), 100.0, 20.0
 N = 49

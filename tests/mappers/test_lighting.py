@@ -7,8 +7,8 @@ import pytest
 import pyvista as pv
 
 from pvfiblets.mappers import Colouring
-from pvfiblets.mappers.line_light import LegendColours, LineLight
-from pvfiblets.mappers.shading import Illuminated
+from pvfiblets.mappers.effects.line_light import LegendColours, LineLight
+from pvfiblets.mappers.effects.shading import Illuminated
 
 COLOUR = np.array([255, 127.5, 63.75])
 AMBIENT, DIFFUSE, SPECULAR, POWER = 0.05, 0.5, 0.3, 6.0

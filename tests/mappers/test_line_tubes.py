@@ -9,7 +9,7 @@ import pytest
 import pyvista as pv
 
 from pvfiblets.mappers import Colouring
-from pvfiblets.mappers.line_tubes import Tubes, TubeShading
+from pvfiblets.mappers.effects.line_tubes import Tubes, TubeShading
 
 RADIUS = 3.0
 RODS = [[(-18, 0, 0), (18, 4, 6)], [(5, -12, -10), (0, 10, 12)]]

@@ -11,7 +11,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkRenderingCore import vtkActor, vtkHardwareSelector
 
 from pvfiblets.halos import HaloLines, HaloStyle
-from pvfiblets.mappers import FibletMapper, HaloMapper, TubeMapper, VolumeMapper, windows
+from pvfiblets.mappers import FibletMapper, HaloMapper, TubeMapper, VolumeMapper
+from pvfiblets.mappers.frames import windows
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.volumes.raycast_options import RaycastOptions

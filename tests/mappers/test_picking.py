@@ -8,7 +8,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkRenderingCore import vtkHardwareSelector, vtkPropPicker
 
-from pvfiblets.mappers import windows
+from pvfiblets.mappers.frames import windows
 
 
 @pytest.fixture

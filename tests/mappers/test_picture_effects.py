@@ -12,10 +12,10 @@ from vtkmodules.vtkCommonCore import vtkDataArray, vtkFloatArray
 from vtkmodules.vtkRenderingCore import vtkActor2D, vtkHardwareSelector, vtkPolyDataMapper2D
 
 from pvfiblets.engine.effects.tone import Tone
-from pvfiblets.mappers import windows
-from pvfiblets.mappers.lens_focus import DepthOfField
-from pvfiblets.mappers.picture import Picture
-from pvfiblets.mappers.scene import others_before, others_opaque
+from pvfiblets.mappers.frames import windows
+from pvfiblets.mappers.frames.scene import others_before, others_opaque
+from pvfiblets.mappers.picture.lens_focus import DepthOfField
+from pvfiblets.mappers.picture.picture import Picture
 from tests.gl_calls import possible, recording
 
 from ..engine import lenses

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from vtkmodules.vtkRenderingCore import vtkActor
 
-from pvfiblets.codec.compress import compress
+from pvfiblets.codec.encoding.compress import compress
 from pvfiblets.halos import HaloLines, HaloStyle
 from pvfiblets.mappers import FibletMapper
 from pvfiblets.mappers.colouring import Colouring
+from pvfiblets.mappers.effects.line_tubes import Tubes
+from pvfiblets.mappers.effects.shading import Silhouette
+from pvfiblets.mappers.frames.scene import pixel_scale
 from pvfiblets.mappers.halos import HaloMapper
-from pvfiblets.mappers.line_tubes import Tubes
-from pvfiblets.mappers.scene import pixel_scale
-from pvfiblets.mappers.shading import Silhouette
 from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.tubes.build import as_spline_tubes

@@ -7,8 +7,9 @@ import pytest
 from vtkmodules.vtkRenderingCore import vtkActor
 
 from pvfiblets.colour_modes import SHADERS
-from pvfiblets.mappers import EngineOptions, FibletMapper, resolve
-from pvfiblets.mappers.proxy import proxy_polydata
+from pvfiblets.mappers import EngineOptions, FibletMapper
+from pvfiblets.mappers.effects import resolve
+from pvfiblets.mappers.vtk_pipeline.proxy import proxy_polydata
 
 
 def text(*features):

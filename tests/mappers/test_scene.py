@@ -7,7 +7,7 @@ import pytest
 import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor, vtkAssembly, vtkRenderer, vtkRenderWindow
 
-from pvfiblets.mappers.scene import frame_of, renderers_of
+from pvfiblets.mappers.frames.scene import frame_of, renderers_of
 
 
 @pytest.fixture

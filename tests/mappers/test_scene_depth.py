@@ -11,8 +11,8 @@ from vtkmodules.vtkRenderingCore import vtkMapper
 
 import pvfiblets
 from pvfiblets.mappers import fiblets as mapper_module
-from pvfiblets.mappers import windows
-from pvfiblets.mappers.scene_depth import OutsideDepth
+from pvfiblets.mappers.frames import windows
+from pvfiblets.mappers.frames.scene_depth import OutsideDepth
 from pvfiblets.synthetic import brain_streamlines
 
 EMPTY = 0xFFFFFFFF

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.mappers import Colouring, windows
-from pvfiblets.mappers.highlight import Highlight
-from pvfiblets.mappers.shading import AmbientOcclusion, DepthCue, Halos, Illuminated, Ink, Silhouette
+from pvfiblets.mappers import Colouring
+from pvfiblets.mappers.effects.highlight import Highlight
+from pvfiblets.mappers.effects.shading import AmbientOcclusion, DepthCue, Halos, Illuminated, Ink, Silhouette
+from pvfiblets.mappers.frames import windows
 
 ALL = {
     "illuminated": Illuminated(),
@@ -286,14 +287,14 @@ def test_colours_can_be_given_and_another_selection_changes_bits_alone(many_rods
 
 
 def slots(mapper):
-    from pvfiblets.mappers.windows import contexts_with
+    from pvfiblets.mappers.frames.windows import contexts_with
 
     return [context.slots[mapper.GetAddressAsString("")] for context in contexts_with(mapper)]
 
 
 def test_more_streamlines_than_a_row_of_the_texture_holds(make_plotter):
-    from pvfiblets.mappers.highlight import _Bits
-    from pvfiblets.mappers.windows import borrowed_context
+    from pvfiblets.mappers.effects.highlight import _Bits
+    from pvfiblets.mappers.frames.windows import borrowed_context
 
     plotter = make_plotter(window_size=(31, 31))
     plotter.show(auto_close=False)

@@ -5,9 +5,9 @@ import pytest
 import pyvista as pv
 
 import pvfiblets
-from pvfiblets.codec.restrict import even_share, restrict
+from pvfiblets.codec.editing.restrict import even_share, restrict
 from pvfiblets.mappers import thinned
-from pvfiblets.mappers.scene import reduce_detail
+from pvfiblets.mappers.frames.scene import reduce_detail
 from pvfiblets.synthetic import brain_streamlines
 
 SHARE = 0.25
@@ -32,7 +32,7 @@ def shown(plotter):
 
 
 def thinned_sets(actor):
-    from pvfiblets.mappers.windows import contexts_with
+    from pvfiblets.mappers.frames.windows import contexts_with
 
     (context,) = contexts_with(actor.mapper)
     return context.slots[actor.mapper.GetAddressAsString("")].thinned

@@ -8,9 +8,9 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPlane
 from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
-from pvfiblets.codec.compress import compress
+from pvfiblets.codec.encoding.compress import compress
 from pvfiblets.mappers import Colouring, FibletMapper
-from pvfiblets.mappers.slices import Slices
+from pvfiblets.mappers.effects.slices import Slices
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.volumes import Transfer
 from pvfiblets.volumes.raycast_options import RaycastOptions

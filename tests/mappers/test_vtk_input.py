@@ -17,7 +17,7 @@ from vtkmodules.vtkFiltersSources import vtkLineSource, vtkSphereSource
 from vtkmodules.vtkRenderingCore import vtkActor, vtkColorTransferFunction, vtkPolyDataMapper
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderer
 
-from pvfiblets.codec.compress import compress
+from pvfiblets.codec.encoding.compress import compress
 from pvfiblets.mappers import Colouring, FibletMapper, HaloMapper, TubeMapper, VolumeMapper
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.volumes.raycast_options import RaycastOptions

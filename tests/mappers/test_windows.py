@@ -9,7 +9,8 @@ import pytest
 import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer, vtkRenderWindow
 
-from pvfiblets.mappers import Colouring, FibletMapper, windows
+from pvfiblets.mappers import Colouring, FibletMapper
+from pvfiblets.mappers.frames import windows
 
 
 def yellow(image):

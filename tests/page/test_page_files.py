@@ -19,7 +19,7 @@ from pvfiblets.cli.command import main
 from pvfiblets.codec.files.archive import open_archive
 from pvfiblets.page.scene import PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
-from pvfiblets.plotting.page_scene import page_of
+from pvfiblets.plotting.page.page_scene import page_of
 from tests.page.pages import differing
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -8,7 +8,7 @@ from vtkmodules.vtkCommonDataModel import vtkPlane
 import pvfiblets
 from pvfiblets.page.scene import PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
-from pvfiblets.plotting.page_scene import add_all, page_of
+from pvfiblets.plotting.page.page_scene import add_all, page_of
 from pvfiblets.regions import Box, Plane, Slab, Sphere
 from pvfiblets.synthetic import brain_streamlines
 from tests.page.pages import differing

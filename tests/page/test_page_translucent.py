@@ -6,7 +6,7 @@ import pyvista as pv
 
 import pvfiblets
 from pvfiblets import regions
-from pvfiblets.plotting.page_scene import page_of
+from pvfiblets.plotting.page.page_scene import page_of
 from pvfiblets.synthetic import brain_streamlines
 from tests.page.pages import differing
 

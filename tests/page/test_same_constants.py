@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pvfiblets.mappers import gathering
+from pvfiblets.mappers.effects import gathering
 from pvfiblets.plotting.slices import plane
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -11,7 +11,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 from pvfiblets.antialias import VARIABLE
-from pvfiblets.mappers import windows
+from pvfiblets.mappers.frames import windows
 
 SIZE = (150, 110)
 

@@ -37,7 +37,7 @@ import pyvista as pv
 import pvfiblets
 from pvfiblets.mappers.drawn_lines import fiblet_lines, halo_lines, tube_lines
 from pvfiblets.mappers.line_data import COLOURS
-from pvfiblets.plotting.page_scene import page_of
+from pvfiblets.plotting.page.page_scene import page_of
 
 root = Path(sys.argv[1])
 assert Path(pvfiblets.__file__).is_relative_to(root)

@@ -13,7 +13,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 DECLARATION = """
-    from pvfiblets.plotting.setting_places import Uniform
+    from pvfiblets.plotting.settings.places import Uniform
 
     emission: Setting[float] = Setting(
         0.0,

@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonCore import vtkFloatArray
 from pvfiblets.antialias import VARIABLE
 from pvfiblets.engine.effects.sample_positions import sample_positions
 from pvfiblets.engine.fiblets.pipelines import compute
-from pvfiblets.mappers.shifted_cameras import shifted
+from pvfiblets.mappers.frames.shifted_cameras import shifted
 from tests.gl_calls import possible, recording
 
 from .refined_scene import SIZE, Renders, drawn, fill, grabbed, ours, real_default, shot  # noqa: F401 - a fixture

@@ -19,9 +19,9 @@ from pvfiblets.engine.fiblets.data import chunks
 from pvfiblets.engine.fiblets.renderer import FibletRenderer
 from pvfiblets.engine.fiblets.sample_layers import SampleLayers
 from pvfiblets.engine.gl import shaders
-from pvfiblets.mappers import antialias_windows
-from pvfiblets.mappers.antialias_windows import Finishing
-from pvfiblets.mappers.picture import Picture
+from pvfiblets.mappers.frames import idle_windows
+from pvfiblets.mappers.frames.idle_windows import Finishing
+from pvfiblets.mappers.picture.picture import Picture
 from pvfiblets.regions import Box
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
@@ -221,7 +221,7 @@ def test_other_pictures_have_one_sample_after_the_other(scene, change, monkeypat
     plotter.picture.antialias = 4
     plotter.render()
     monkeypatch.setattr(SampleLayers, "draw", None)
-    monkeypatch.setattr("pvfiblets.mappers.antialias_refinement.SAMPLES", 4)
+    monkeypatch.setattr("pvfiblets.mappers.picture.antialias_refinement.SAMPLES", 4)
     renders = Renders(plotter)
     shot(plotter)
     assert renders.since() >= 4
@@ -442,7 +442,7 @@ def test_meshes_are_sampled_a_few_at_a_time_where_somebody_waits(scene, monkeypa
     add_meshes(plotter, actor)
     plotter.show(auto_close=False)
     finished, _ = shown(plotter, monkeypatch)
-    monkeypatch.setattr("pvfiblets.mappers.picture.PATIENCE", 0.0)
+    monkeypatch.setattr("pvfiblets.mappers.picture.picture.PATIENCE", 0.0)
     props = [plotter.renderer.GetViewProps().GetItemAsObject(i) for i in range(6)]
     plotter.picture.antialias = "off"
     plotter.picture.antialias = "refined"
@@ -470,7 +470,7 @@ def test_where_memory_lacks_for_samples_of_meshes_all_come_one_after_the_other(s
         raise EngineError("no memory")
 
     if lacking == "bytes":
-        monkeypatch.setattr("pvfiblets.mappers.picture.MOST_BYTES", 1000)
+        monkeypatch.setattr("pvfiblets.mappers.picture.picture.MOST_BYTES", 1000)
     else:
         monkeypatch.setattr("pvfiblets.engine.effects.picture.PictureEffects.copy", fails)
     found, frames = shown(plotter, monkeypatch)
@@ -575,11 +575,11 @@ def test_progress_is_shown_after_a_while(scene, monkeypatch):
         told.append((show, how["total"]))
         yield SimpleNamespace(update=told.append)
 
-    monkeypatch.setattr(antialias_windows, "progress_bar", bar)
-    monkeypatch.setattr(antialias_windows, "PATIENCE", 600.0)
+    monkeypatch.setattr(idle_windows, "progress_bar", bar)
+    monkeypatch.setattr(idle_windows, "PATIENCE", 600.0)
     shown(plotter, monkeypatch, singly=True)
     assert told == []
-    monkeypatch.setattr(antialias_windows, "PATIENCE", 0.0)
+    monkeypatch.setattr(idle_windows, "PATIENCE", 0.0)
     shown(plotter, monkeypatch, singly=True)
     assert told[0][1] == 16
     assert sum(told[1:]) >= 15

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pvfiblets
-from pvfiblets.codec.point_arrays import colours_of_points
+from pvfiblets.codec.editing.point_arrays import colours_of_points, with_point_colours
 from pvfiblets.streamlines import Streamlines
 
 X = np.linspace(-10.0, 10.0, 41)
@@ -96,7 +96,7 @@ def test_bytes_are_kept_to_half_a_step():
     rng = np.random.default_rng(3)
     colours = rng.integers(0, 256, (41, 4)).astype(np.uint8)
     for columns in (3, 4):
-        held = pvfiblets.codec.point_arrays.with_point_colours(pvfiblets.compress(line()), "c", colours[:, :columns])
+        held = with_point_colours(pvfiblets.compress(line()), "c", colours[:, :columns])
         assert sum(held.per_point[f"c[{k}]"].codes.nbytes for k in range(columns)) == columns * 41
         kept = colours_of_points(held, "c")
         assert np.abs(kept[:, :columns].astype(int) - colours[:, :columns]).max() <= 1

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.codec.compress import compress
+from pvfiblets.codec.encoding.compress import compress
 from pvfiblets.plotting import FibletActor
 
 from .views import shot

@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonDataModel import vtkPlane
 
 from pvfiblets import compress, regions
 from pvfiblets.plotting.cut_surfaces import cut_surface
-from pvfiblets.plotting.region_sources import slab
+from pvfiblets.plotting.filtering.region_sources import slab
 from pvfiblets.synthetic import brain_streamlines
 
 SIZE = (240, 200)

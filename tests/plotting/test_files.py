@@ -13,8 +13,8 @@ import pyvista as pv
 import pvfiblets as pf
 from pvfiblets.errors import FormatError
 from pvfiblets.other_libraries import streamlines_of
+from pvfiblets.plotting.filtering.region_sources import as_region
 from pvfiblets.plotting.meshes import read_mesh
-from pvfiblets.plotting.region_sources import as_region
 from pvfiblets.support.vtk_space import unnamed_as
 
 

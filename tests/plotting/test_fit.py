@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import compress
-from pvfiblets.codec.restrict import even_share
+from pvfiblets.codec.editing.restrict import even_share
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets.data import memory_fit
 from pvfiblets.engine.fiblets.parts.streamed_renderer import StreamedRenderer

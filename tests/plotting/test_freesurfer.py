@@ -17,9 +17,9 @@ from PIL import Image
 
 from pvfiblets.cli.command import main
 from pvfiblets.errors import FormatError
+from pvfiblets.plotting.filtering.region_sources import as_region
 from pvfiblets.plotting.gifti import shown_array, with_vertex_values
 from pvfiblets.plotting.meshes import read_mesh
-from pvfiblets.plotting.region_sources import as_region
 
 BALL = pv.Icosphere(radius=10.0, nsub=2)
 POINTS = np.asarray(BALL.points, "f4")

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.codec.compress import compress
+from pvfiblets.codec.encoding.compress import compress
 from pvfiblets.engine.effects.halos import HaloPass
-from pvfiblets.mappers.spacing import MOST_STREAMLINES, line_spacing_of
+from pvfiblets.mappers.effects.spacing import MOST_STREAMLINES, line_spacing_of
 from pvfiblets.plotting.fiblets.looks import LOOKS, PLAIN, Apart, Fewer, look_of, settings_of
 from pvfiblets.query.measures.measures import measure
 from pvfiblets.streamlines import Streamlines

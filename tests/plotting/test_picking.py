@@ -7,8 +7,8 @@ import pytest
 import pyvista as pv
 
 from pvfiblets.engine.fiblets.data.filter_textures import Filter
+from pvfiblets.mappers.frames.windows import contexts_with
 from pvfiblets.mappers.picking import EMPTY
-from pvfiblets.mappers.windows import contexts_with
 from pvfiblets.plotting.fiblets.pick_result import Picked
 from pvfiblets.synthetic import brain_streamlines
 

@@ -11,7 +11,7 @@ import pyvista as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray
 
-from pvfiblets.mappers import windows
+from pvfiblets.mappers.frames import windows
 
 from ..engine import lenses
 
@@ -185,7 +185,7 @@ def test_memory_is_given_back_and_errors_of_a_draw_are_raised_by_what_rendered(p
     plotter.picture.gamma = 2.0
     shot(plotter)
     with monkeypatch.context() as patched:
-        patched.setattr("pvfiblets.mappers.picture.COLOUR", 0x8CE7)
+        patched.setattr("pvfiblets.mappers.picture.picture.COLOUR", 0x8CE7)
         with pytest.raises(RuntimeError, match="draw into textures"):
             plotter.render()
     plotter.close()
@@ -200,7 +200,7 @@ def test_no_import_is_needed_and_nothing_is_imported_before():
         "assert 'picture' in dir(pl)\n"
         "pl.add_mesh(pv.Sphere())\n"
         "pl.show(auto_close=False)\n"
-        "assert 'pvfiblets.mappers.picture' not in sys.modules\n"
+        "assert 'pvfiblets.mappers.picture.picture' not in sys.modules\n"
         "print(pl.picture.gamma)\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)

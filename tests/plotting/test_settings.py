@@ -8,11 +8,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pvfiblets.mappers.resolve import assemble
+from pvfiblets.mappers.effects.resolve import assemble
 from pvfiblets.plotting.fiblets.settings import FibletSettings
 from pvfiblets.plotting.halos.settings import HaloLineSettings, HaloPointSettings
-from pvfiblets.plotting.setting_places import PROPERTY
-from pvfiblets.plotting.settings import Argument, Given, NoSetting, Setting, Settings, arguments
+from pvfiblets.plotting.settings.places import PROPERTY
+from pvfiblets.plotting.settings.settings import Argument, Given, NoSetting, Setting, Settings, arguments
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.volumes.settings import VolumeSettings
 

@@ -12,7 +12,7 @@ import pyvista as pv
 from scipy.ndimage import map_coordinates
 
 import pvfiblets as pf
-from pvfiblets.codec.compress import compress
+from pvfiblets.codec.encoding.compress import compress
 from pvfiblets.plotting import TubeActor
 from pvfiblets.plotting.tubes.sources import with_built_in
 from pvfiblets.tubes.build import as_spline_tubes

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.plotting.scalars import are_colours
+from pvfiblets.plotting.colours.scalars import are_colours
 
 
 @pytest.mark.parametrize("kind", ["int16", "int64", "uint16", "float64"])

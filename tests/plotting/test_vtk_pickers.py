@@ -195,8 +195,8 @@ def test_of_large_sets_pickers_get_what_lies_near(plotter, monkeypatch):
     actor = plotter.add_fiblets(lines, color="white")
     plotter.camera_position = "xy"
     plotter.show(auto_close=False)
-    monkeypatch.setattr("pvfiblets.mappers.vtk_overrides.MOST_POINTS", 2000)
-    monkeypatch.setattr("pvfiblets.mappers.readable_lines.MOST_POINTS", 2000)
+    monkeypatch.setattr("pvfiblets.mappers.vtk_pipeline.vtk_overrides.MOST_POINTS", 2000)
+    monkeypatch.setattr("pvfiblets.mappers.vtk_pipeline.readable_lines.MOST_POINTS", 2000)
     picker = vtkCellPicker()
     picker.SetTolerance(0.005)
     assert picker.Pick(*pixel_of(plotter, (41.3, 33.0, 0.0)), 0.0, plotter.renderer)

@@ -10,7 +10,7 @@ import pytest
 import pvfiblets
 from pvfiblets import Streamlines, compress, regions
 from pvfiblets.cli.command import main
-from pvfiblets.plotting.region_sources import as_region
+from pvfiblets.plotting.filtering.region_sources import as_region
 from pvfiblets.query.connectome.matrix import connectome, end_labels
 
 SHEARED = np.array([[2.0, 0.4, 0.0, -30.0], [0.0, -1.5, 0.3, 22.0], [0.2, 0.0, 2.5, -28.0], [0.0, 0.0, 0.0, 1.0]])

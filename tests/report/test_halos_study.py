@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import formats
-from pvfiblets.codec.compress import compress
+from pvfiblets.codec.encoding.compress import compress
 from pvfiblets.engine.halos import HaloRenderer
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.report.cameras import Camera

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import formats
-from pvfiblets.codec.compress import compress
+from pvfiblets.codec.encoding.compress import compress
 from pvfiblets.report import drawing, run, studies, timing
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record
 from pvfiblets.report.report_file import Report

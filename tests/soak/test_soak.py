@@ -8,7 +8,7 @@ import pytest
 import pyvista as pv
 
 from pvfiblets import compress
-from pvfiblets.mappers import windows
+from pvfiblets.mappers.frames import windows
 from pvfiblets.streamlines import Streamlines
 
 from . import acts, walk

@@ -20,7 +20,7 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets.engine.gl.gl_loader import loader
-from pvfiblets.mappers import windows
+from pvfiblets.mappers.frames import windows
 
 from . import gpu_memory
 from .acts import WEIGHTS, Data

@@ -7,18 +7,18 @@ from types import SimpleNamespace
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.web.panels.bundle_finding import FindingActions
-from pvfiblets.web.panels.bundle_measures import MeasureActions
-from pvfiblets.web.panels.bundles_tab import BundleActions
-from pvfiblets.web.panels.clip_tab import CutActions
 from pvfiblets.web.panels.describe import Charts
-from pvfiblets.web.panels.filter_regions import RegionActions
-from pvfiblets.web.panels.filter_tab import FilterActions
+from pvfiblets.web.panels.files.opening import FileActions
 from pvfiblets.web.panels.matrix_panel import MatrixActions
-from pvfiblets.web.panels.opening import FileActions
-from pvfiblets.web.scene.confined import Confined
+from pvfiblets.web.panels.tabs.bundle_finding import FindingActions
+from pvfiblets.web.panels.tabs.bundle_measures import MeasureActions
+from pvfiblets.web.panels.tabs.bundles_tab import BundleActions
+from pvfiblets.web.panels.tabs.clip_tab import CutActions
+from pvfiblets.web.panels.tabs.filter_regions import RegionActions
+from pvfiblets.web.panels.tabs.filter_tab import FilterActions
+from pvfiblets.web.scene.files.confined import Confined
 from pvfiblets.web.scene.scene import Scene
-from pvfiblets.web.scene.slicing import VIEWS, ready_views
+from pvfiblets.web.scene.slices.slicing import VIEWS, ready_views
 from pvfiblets.web.server.options import Options
 from pvfiblets.web.server.scratch import Notes
 from pvfiblets.web.session.history import History

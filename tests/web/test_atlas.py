@@ -7,7 +7,7 @@ import nibabel
 import numpy as np
 import pytest
 
-from pvfiblets.web.panels.atlas_tab import AtlasActions
+from pvfiblets.web.panels.tabs.atlas_tab import AtlasActions
 from pvfiblets.web.session import files as session
 from pvfiblets.web.session.history import History
 from pvfiblets.web.session.script import as_script

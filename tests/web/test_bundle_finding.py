@@ -9,7 +9,7 @@ import pytest
 import pvfiblets
 from pvfiblets import Streamlines
 from pvfiblets.query.bundles import clusters as clustering
-from pvfiblets.web.panels import bundle_finding
+from pvfiblets.web.panels.tabs import bundle_finding
 from tests.web.desk import Desk
 
 

@@ -15,12 +15,13 @@ from aiohttp import web
 import pvfiblets
 from pvfiblets.formats import attachments
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.web.panels import csv_tables, exporting
+from pvfiblets.web.panels import csv_tables
 from pvfiblets.web.panels.csv_tables import profile_csv, selection_csv
-from pvfiblets.web.panels.exporting import ExportActions
-from pvfiblets.web.panels.selection_tab import SelectionActions
-from pvfiblets.web.panels.writing import EXPORTS, write
-from pvfiblets.web.scene.loading import Cancelled
+from pvfiblets.web.panels.files import exporting
+from pvfiblets.web.panels.files.exporting import ExportActions
+from pvfiblets.web.panels.files.writing import EXPORTS, write
+from pvfiblets.web.panels.tabs.selection_tab import SelectionActions
+from pvfiblets.web.scene.files.loading import Cancelled
 from tests.web.desk import Desk
 
 

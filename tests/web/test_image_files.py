@@ -20,7 +20,7 @@ from pvfiblets.slices.image import as_slice_image
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.volumes import RaycastVolume
 from pvfiblets.web.scene import layers
-from pvfiblets.web.scene.loading import Files
+from pvfiblets.web.scene.files.loading import Files
 from pvfiblets.web.session import files as session
 from pvfiblets.web.session.document import Ids, Source
 from pvfiblets.web.session.history import History

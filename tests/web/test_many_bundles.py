@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import pvfiblets
-from pvfiblets.plotting.colours import MOST_WORDS
-from pvfiblets.web.panels.bundles_tab import LISTED
+from pvfiblets.plotting.colours.colours import MOST_WORDS
+from pvfiblets.web.panels.tabs.bundles_tab import LISTED
 from tests.web.desk import Desk
 
 

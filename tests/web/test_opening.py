@@ -187,7 +187,7 @@ def test_a_session_that_is_stopped_or_wrong_changes_nothing(desk, scene):
 
 
 def test_what_a_process_keeps_is_restored_by_the_next_after_its_first_files(desk, scene, tmp_path, monkeypatch):
-    monkeypatch.setattr("pvfiblets.web.panels.session_actions.QUIET", 0.0)
+    monkeypatch.setattr("pvfiblets.web.panels.files.session_actions.QUIET", 0.0)
     desk.notes = Notes(tmp_path)
     layer = scene.open("lines.trk")
     scene.selection.select(layer.id, [4, 5, 9])

@@ -9,7 +9,7 @@ import pyvista as pv
 from aiohttp import web
 
 from pvfiblets.errors import FibletsError
-from pvfiblets.web.scene.loading import Files
+from pvfiblets.web.scene.files.loading import Files
 from pvfiblets.web.session.document import Source
 from tests.web.desk import Desk
 

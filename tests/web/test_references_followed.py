@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.errors import FibletsError
-from pvfiblets.web.scene.loading import Files
+from pvfiblets.web.scene.files.loading import Files
 from pvfiblets.web.session.document import Source
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="inotify is Linux's")

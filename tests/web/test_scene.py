@@ -11,7 +11,7 @@ import pyvista as pv
 import pvfiblets
 from pvfiblets.errors import FibletsError
 from pvfiblets.formats.registry import UnknownFormatError
-from pvfiblets.web.scene.loading import Cancelled
+from pvfiblets.web.scene.files.loading import Cancelled
 from pvfiblets.web.scene.scalar_bar_layout import DOTS, Wanted, arrange
 from pvfiblets.web.scene.scene import Scene
 

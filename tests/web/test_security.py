@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from pvfiblets.web.scene.confined import Confined, ConfinedError
+from pvfiblets.web.scene.files.confined import Confined, ConfinedError
 from pvfiblets.web.server.access import LARGEST_MESSAGE, Access, RefusedError, check_message
 from pvfiblets.web.server.options import Options, is_loopback
 from pvfiblets.web.server.rpc_allowlist import AllowedCalls, MalformedError, plain, pointer_event, view_size

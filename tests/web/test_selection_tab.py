@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pvfiblets.web.panels.selection_tab import SelectionActions
+from pvfiblets.web.panels.tabs.selection_tab import SelectionActions
 from tests.web.desk import Desk, scene_of_views
 
 

@@ -11,7 +11,7 @@ import pytest
 import pyvista as pv
 
 from pvfiblets.web.scene.scene import Scene
-from pvfiblets.web.scene.slicing import LAYOUTS, ready_views
+from pvfiblets.web.scene.slices.slicing import LAYOUTS, ready_views
 from pvfiblets.web.server.options import Options
 from pvfiblets.web.view.browser_drawing import BrowserDrawing
 from pvfiblets.web.view.sent_scene import LARGEST, SentScene, SentScenes

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 import pvfiblets
 from pvfiblets.engine.fiblets.parts import streamed_renderer
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.web.scene.confined import Confined
-from pvfiblets.web.scene.loading import Files
+from pvfiblets.web.scene.files.confined import Confined
+from pvfiblets.web.scene.files.loading import Files
 from pvfiblets.web.scene.scene import Scene
 from pvfiblets.web.server.options import Options
 from pvfiblets.web.session import files as session

@@ -7,7 +7,7 @@ import pyvista as pv
 
 from pvfiblets.plotting.slices.oblique import HANDLE
 from pvfiblets.web.scene.scene import Scene
-from pvfiblets.web.scene.slicing import NAMES, angles_of, normal_of
+from pvfiblets.web.scene.slices.slicing import NAMES, angles_of, normal_of
 from pvfiblets.web.session import files as session
 from pvfiblets.web.session.history import History
 from pvfiblets.web.view.touch import Fingers

@@ -8,8 +8,8 @@ import pytest
 from pvfiblets.web.panels import sliders
 from pvfiblets.web.panels.controls import axis_of, controls, moved
 from pvfiblets.web.panels.describe import typed
-from pvfiblets.web.panels.filter_regions import condition, flat
 from pvfiblets.web.panels.sliders import SlideActions
+from pvfiblets.web.panels.tabs.filter_regions import condition, flat
 from tests.web.desk import Desk
 from tests.web.visitors import until
 
@@ -172,7 +172,7 @@ def test_profiles_have_axes_with_units_and_tell_what_lies_under_the_pointer():
 
 
 def test_facts_are_tables_with_units(scene):
-    from pvfiblets.web.panels.info_tables import tables
+    from pvfiblets.web.panels.tabs.info_tables import tables
 
     lines = scene.open("lines.trk")
     scene.cameras.screenshot()

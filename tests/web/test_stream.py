@@ -13,8 +13,8 @@ from PIL import Image
 from scipy import ndimage
 
 from pvfiblets.engine.pieces import Pieces
-from pvfiblets.mappers.incremental_frame import draw_in_pieces
-from pvfiblets.mappers.scene import reduce_detail, slack
+from pvfiblets.mappers.frames.incremental_frame import draw_in_pieces
+from pvfiblets.mappers.frames.scene import reduce_detail, slack
 from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.web.view import stream as stream_module
 from pvfiblets.web.view.encoding import encode

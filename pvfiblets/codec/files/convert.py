@@ -21,7 +21,7 @@ from ...support.memory import fits
 from ...support.unfinished import remove_unfinished, scratch_folder_for
 from ...support.whole_files import naming_target
 from .. import parameters as limits
-from ..compress import (
+from ..encoding.compress import (
     CHUNK_POINTS,
     PerPoint,
     ValueBounds,
@@ -33,10 +33,10 @@ from ..compress import (
     not_kept,
     value_coders,
 )
-from ..exact import raw_bytes
+from ..encoding.exact import raw_bytes
+from ..encoding.ordering import Order, check_order
 from ..fibletset import FibletSet
 from ..layout import WORDS
-from ..ordering import Order, check_order
 from ..parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of, tell_far
 from ..point_values import PointValues, ValueCoder, value_columns, value_errors
 from ..progress import Progress, shown
@@ -45,7 +45,7 @@ from .fiblets_file import CORE, OPTIONAL, index_members, make_header
 from .file_error import compare_file
 
 if TYPE_CHECKING:
-    from ..encode import Effort, Encoder
+    from ..encoding.encode import Effort, Encoder
 
 SAMPLE_POINTS = 1_000_000  # compared points of a large file, about
 
@@ -125,7 +125,7 @@ def compress_file(
     remove_unfinished(Path(target).resolve().parent)
     promise = None
     if step != "auto":
-        from ..resample import resample
+        from ..encoding.resample import resample
 
         coarse = Survey()
         for chunk in shown(formats.iter_chunks(source, CHUNK_POINTS), None, "surveying", progress):
@@ -142,7 +142,7 @@ def compress_file(
     if exact or (exact is None and plain and raw < limits.EXACT_BELOW):
         return _keep_exactly(first.small, target, names, started)
     first.small.clear()
-    from ..encode import Encoder  # which needs a compiler
+    from ..encoding.encode import Encoder  # which needs a compiler
 
     if promise is None or step == "auto":
         parameters = Parameters.choose(found, max_error)

@@ -22,7 +22,7 @@ import numpy.typing as npt
 from ...errors import FormatError
 from ...streamlines import Streamlines, offsets_from_counts
 from ...support.addresses import is_url
-from ..exact import plain_records
+from ..encoding.exact import plain_records
 from ..layout import PAGE, WORDS
 from ..parameters import Parameters, bounds_of, survey
 from ..point_values import PointValues, linear_table, opened_table, stored_table

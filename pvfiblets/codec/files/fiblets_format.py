@@ -11,8 +11,8 @@ import numpy as np
 
 from ...streamlines import Streamlines
 from ..check import check_file
-from ..compress import compress
 from ..decompress import held_in_bounds
+from ..encoding.compress import compress
 from ..fibletset import FibletSet
 from ..point_values import PointValues
 from ..tangents import PIXELS

@@ -12,8 +12,8 @@ import numpy as np
 from ... import formats
 from ...streamlines import Streamlines
 from ...support.summary import counting
-from ..compress import CHUNK_POINTS
 from ..decompress import iter_chunks
+from ..encoding.compress import CHUNK_POINTS
 from ..error import CodingError, ErrorTally
 from ..fibletset import FibletSet
 from ..progress import Progress, shown

@@ -15,8 +15,8 @@ import numpy as np
 
 from ..jit import kernel, parallel_kernel
 from ..layout import DIRECTION_SCALE, MAX_POINTS, STEP_LEVELS
-from ..nearest import CELLS, EXTENT
 from .capsule_kernels import capsule
+from .nearest import CELLS, EXTENT
 from .turn_kernels import excess, may_turn, within
 
 BLOCK = 64  # slots that share one thread's scratch

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from ..encoding.ordering import hilbert_keys
 from ..files.archive import forget
 from ..layout import PAGE, WORDS, unpack
-from ..ordering import hilbert_keys
 
 if TYPE_CHECKING:
     from ..fibletset import FibletSet

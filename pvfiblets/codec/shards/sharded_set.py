@@ -15,7 +15,7 @@ from ...errors import FormatError
 from ...streamlines import Streamlines
 from ..check import check_file
 from ..decompress import held_in_bounds
-from ..join import concatenate
+from ..editing.join import concatenate
 from .manifest import MANIFEST, Bounds, Manifest, Shard
 from .store import Cache, Folder, Remote, store_at
 

@@ -19,10 +19,10 @@ import numpy.typing as npt
 from ...streamlines import Streamlines
 from ...support.memory import free_host_memory
 from ..decompress import select_streamlines
-from ..extract import once
+from ..editing.extract import once
+from ..editing.join import concatenate
 from ..fibletset import FibletSet
 from ..files.stored_parts import of_streamlines
-from ..join import concatenate
 from ..parameters import Parameters
 from ..point_values import PointValues
 from .sharded_set import ShardedSet, renumbered

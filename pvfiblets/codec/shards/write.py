@@ -18,9 +18,9 @@ from tqdm import tqdm
 
 from ...support.unfinished import locked, remove_unfinished, scratch_folder_for, unfinished
 from ...support.whole_files import naming_target
-from ..extract import extract
+from ..editing.extract import extract
+from ..editing.restrict import even_share
 from ..progress import Progress
-from ..restrict import even_share
 from .manifest import MANIFEST, Manifest, Shard, StoredFile
 from .places import shards_of
 

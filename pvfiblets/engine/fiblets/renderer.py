@@ -77,7 +77,7 @@ class FibletRenderer(LinesBehind):
         max_groups: int | None = None,
         max_total_bytes: int | None = None,
         lender: Drawable[Any] | None = None,  # as of `pvfiblets.engine.drawable.Drawable`
-        # what filters speak of, where `fiblets` are some of its streamlines (`pvfiblets.codec.restrict`)
+        # what filters speak of, where `fiblets` are some of its streamlines (`pvfiblets.codec.editing.restrict`)
         whole: FibletSet | None = None,
         alike: int | None = None,  # fiblets of a set whose pictures those of this part of it shall equal in every bit
         most: float = 1.0,  # with `fit='sample'`: draw no larger share of the streamlines, whatever would fit

@@ -14,7 +14,7 @@ import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkCellPicker
 
 from pvfiblets.plotting.active_view import active_view
-from pvfiblets.plotting.settings import number
+from pvfiblets.plotting.settings.settings import number
 from pvfiblets.query.connectome.graph import Graph, mean_streamlines
 from pvfiblets.slices.labels import LabelTable, as_label_table
 from pvfiblets.streamlines import Streamlines

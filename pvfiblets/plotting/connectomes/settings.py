@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from pvfiblets.plotting import shared_settings as shared
-from pvfiblets.plotting.settings import Argument, Settings
-from pvfiblets.plotting.shared_settings import Common
+from pvfiblets.plotting.settings import shared
+from pvfiblets.plotting.settings.settings import Argument, Settings
+from pvfiblets.plotting.settings.shared import Common
 
 
 class EdgeSettings(Settings):

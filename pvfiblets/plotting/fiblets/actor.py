@@ -9,16 +9,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.codec.point_arrays import with_point_values as add_values
+from pvfiblets.codec.editing.point_arrays import with_point_values as add_values
 from pvfiblets.mappers.colouring import Colouring
-from pvfiblets.mappers.depth_peeling import Layers
+from pvfiblets.mappers.effects.depth_peeling import Layers
+from pvfiblets.mappers.effects.line_light import LegendColours, LineLight
+from pvfiblets.mappers.effects.line_tubes import Tubes, TubeShading
+from pvfiblets.mappers.effects.shading import Ink
 from pvfiblets.mappers.engine_options import EngineOptions
 from pvfiblets.mappers.fiblets import FibletMapper
-from pvfiblets.mappers.line_light import LegendColours, LineLight
-from pvfiblets.mappers.line_tubes import Tubes, TubeShading
-from pvfiblets.mappers.shading import Ink
-from pvfiblets.plotting.coloured import added_up
-from pvfiblets.plotting.colours import limits
+from pvfiblets.plotting.actors.coloured import added_up
+from pvfiblets.plotting.actors.linked_property import own_writes
+from pvfiblets.plotting.actors.mapper_words import PlottedLines
+from pvfiblets.plotting.actors.shading import BACKGROUND
+from pvfiblets.plotting.colours.colours import limits
+from pvfiblets.plotting.colours.scalars import Scalars, refuse_numbers
 from pvfiblets.plotting.fiblets.filtering import FibletSubject
 from pvfiblets.plotting.fiblets.looks import PLAIN, look_of, settings_of
 from pvfiblets.plotting.fiblets.opacities import Opacities, find_opacities
@@ -27,13 +31,9 @@ from pvfiblets.plotting.fiblets.scalars import find_fiblet_scalars
 from pvfiblets.plotting.fiblets.selection import SelectableActor
 from pvfiblets.plotting.fiblets.settings import ALL, STYLES, THINNEST, TONES, WIDEST, FibletSettings
 from pvfiblets.plotting.fiblets.sources import as_fiblets, with_point_values
-from pvfiblets.plotting.filter_state import Choices
-from pvfiblets.plotting.linked_property import own_writes
-from pvfiblets.plotting.mapper_words import PlottedLines
-from pvfiblets.plotting.scalars import Scalars, refuse_numbers
-from pvfiblets.plotting.setting_places import OPTIONS
-from pvfiblets.plotting.settings import Given
-from pvfiblets.plotting.shading import BACKGROUND
+from pvfiblets.plotting.filtering.state import Choices
+from pvfiblets.plotting.settings.places import OPTIONS
+from pvfiblets.plotting.settings.settings import Given
 from pvfiblets.query.measures.even_sample import mean_direction
 
 if TYPE_CHECKING:
@@ -506,7 +506,7 @@ class FibletActor(FibletSettings, SelectableActor):
         thin, counted = self._style == "density", self._scalars is not None and self._scalars.kind == "pixel_count"
         effect = None
         if thin or counted:
-            from pvfiblets.mappers.density import Density
+            from pvfiblets.mappers.effects.density import Density
 
             clim = self._settings.clim
             most = None if clim is None else limits(replace(self._settings, log_scale=False), _COUNTS)[1]
@@ -553,7 +553,7 @@ class FibletActor(FibletSettings, SelectableActor):
         elif self._transparency != ALL:
             effect = _layers(self._transparency)
         elif self._mapper.colouring.translucent() or self.prop.GetOpacity() < 1.0:
-            from pvfiblets.mappers.slices import Slices
+            from pvfiblets.mappers.effects.slices import Slices
 
             effect = Slices()
         if effect != self._mapper.effects.get(_LAYERS):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.codec.point_arrays import with_point_values
+from pvfiblets.codec.editing.point_arrays import with_point_values
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.attachments import name_of
 from pvfiblets.formats.registry import UnknownFormatError

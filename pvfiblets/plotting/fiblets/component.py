@@ -2,7 +2,7 @@
 
 PyVista finds this module by two entry points and imports it when a plotter is first asked for
 either name. :class:`FibletsComponent` lives as long as its plotter; its life cycle is that of
-`pvfiblets.plotting.actor_registry`.
+`pvfiblets.plotting.actors.registry`.
 """
 
 from __future__ import annotations
@@ -14,29 +14,29 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.actor_registry import ActorRegistry
-from pvfiblets.plotting.call_signature import plotter_method, refuse_unknown
+from pvfiblets.plotting.actors.registry import ActorRegistry
 from pvfiblets.plotting.components import register
 from pvfiblets.plotting.fiblets.picking import MousePicking
 from pvfiblets.plotting.fiblets.settings import FibletSettings
-from pvfiblets.plotting.filter_state import unique_name
-from pvfiblets.plotting.mesh_arguments import ThickLineCommon
-from pvfiblets.plotting.setting_places import OPTIONS
-from pvfiblets.plotting.settings import Given, Setting
-from pvfiblets.plotting.unsupported_arguments import why_not
+from pvfiblets.plotting.filtering.state import unique_name
+from pvfiblets.plotting.settings.call_signature import plotter_method, refuse_unknown
+from pvfiblets.plotting.settings.mesh_arguments import ThickLineCommon
+from pvfiblets.plotting.settings.places import OPTIONS
+from pvfiblets.plotting.settings.settings import Given, Setting
+from pvfiblets.plotting.settings.unsupported_arguments import why_not
 
 if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
-    from pvfiblets.codec.compress import PerPoint
+    from pvfiblets.codec.encoding.compress import PerPoint
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.gl.capabilities import PipelineTable
+    from pvfiblets.plotting.colours.same_names import Preference
     from pvfiblets.plotting.fiblets.actor import FibletActor
     from pvfiblets.plotting.fiblets.pick_result import Picked
     from pvfiblets.plotting.fiblets.slabs import FibletSlab
     from pvfiblets.plotting.notebook_view import PageView
-    from pvfiblets.plotting.same_names import Preference
     from pvfiblets.streamlines import Streamlines
 
     Source: TypeAlias = str | PathLike[str] | FibletSet | Streamlines | pv.PolyData | list[Any]
@@ -119,7 +119,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
             Which array a name means that both points and lines (cells) have, here and in criteria; the other is
             called ``"NAME (line)"`` or ``"NAME (point)"``.
         **options
-            Further arguments of :func:`pvfiblets.codec.compress`, such as ``step`` or ``effort``.
+            Further arguments of :func:`pvfiblets.codec.encoding.compress`, such as ``step`` or ``effort``.
 
         Returns
         -------
@@ -160,7 +160,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         options = set(own) - self.OWN
         if not options:
             return
-        from pvfiblets.codec.compress import compress
+        from pvfiblets.codec.encoding.compress import compress
         from pvfiblets.plotting.fiblets.actor import FibletActor
 
         unknown = sorted(options - set(inspect.signature(compress).parameters))
@@ -495,7 +495,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
             If the mesh is open, empty or inside-out.
         """
         from pvfiblets.plotting.fiblets.widgets import surface
-        from pvfiblets.plotting.region_sources import as_region
+        from pvfiblets.plotting.filtering.region_sources import as_region
 
         region = as_region(mesh)
         actors, name = self._cut_actors(actor), self._new_name(name, "mesh")
@@ -550,7 +550,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         ['compute', 'tessellation', 'geometry']
         """
         from pvfiblets.engine.gl.capabilities import pipelines
-        from pvfiblets.mappers.windows import borrowed_context
+        from pvfiblets.mappers.frames.windows import borrowed_context
 
         window = self._plotter.render_window
         if window is None:
@@ -602,7 +602,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         >>> _ = pl.add_fiblets(brain_streamlines(1000))
         >>> pl.fiblets.export_page("figure.html")  # doctest: +SKIP
         """
-        from pvfiblets.plotting.page_scene import export_page
+        from pvfiblets.plotting.page.page_scene import export_page
 
         return export_page(self._plotter, path, title=title, largest_file=largest_file)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from pvfiblets.plotting.selection import SelectedActor
+from pvfiblets.plotting.filtering.selection import SelectedActor
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FibletSubject:
-    """A :class:`~pvfiblets.plotting.filter_state.Subject`: fiblets, whose regions the GPU finds."""
+    """A :class:`~pvfiblets.plotting.filtering.state.Subject`: fiblets, whose regions the GPU finds."""
 
     lines: FibletSet
     mapper: FibletMapper

@@ -2,8 +2,8 @@
 
 `LOOKS` declares each as a table of settings of `pvfiblets.plotting.fiblets.settings`; `settings_of` makes it into
 values for some data, `look_of` says which look some settings are. What is to be as wide as the lines leave room for
-goes by the distance between lines (`pvfiblets.mappers.spacing`): widths and radii here, halos and occlusion in their
-own defaults.
+goes by the distance between lines (`pvfiblets.mappers.effects.spacing`): widths and radii here, halos and occlusion in
+their own defaults.
 
 A look has nothing to do with colours, nor with the whole picture (``plotter.picture``): tone mapping would turn a white
 background grey, and change what else is in the scene.
@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from pvfiblets.plotting import shared_settings as shared
+from pvfiblets.plotting.settings import shared
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Apart:
 
     def value_for(self, data: Any) -> float:
         """Return the width for some data."""
-        from pvfiblets.mappers.spacing import line_spacing_of
+        from pvfiblets.mappers.effects.spacing import line_spacing_of
 
         size, spacing = shared.bounds_size(data), line_spacing_of(data)
         share = self.most if spacing is None else min(max(self.times * spacing / size, self.least), self.most)

@@ -31,7 +31,7 @@ class Opacities:
 
 def find_opacities(fiblets: FibletSet, choice: Any) -> tuple[FibletSet, Opacities]:
     """Find what a choice of opacities means."""
-    from pvfiblets.codec.point_arrays import with_point_values
+    from pvfiblets.codec.editing.point_arrays import with_point_values
 
     if isinstance(choice, str):
         return fiblets, _named(fiblets, choice)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets.plotting.filter_state import unique_name
+from pvfiblets.plotting.filtering.state import unique_name
 from pvfiblets.query.selection.predicates import Listed
 
 if TYPE_CHECKING:

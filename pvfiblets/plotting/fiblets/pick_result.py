@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 
+from pvfiblets.mappers.frames.scene import to_array
 from pvfiblets.mappers.picking import Layer, pick_area, shown_by
-from pvfiblets.mappers.scene import to_array
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet

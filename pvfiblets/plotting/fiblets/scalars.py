@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.codec.point_arrays import colour_columns
+from pvfiblets.codec.editing.point_arrays import colour_columns
 from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.images.sources import as_image
-from pvfiblets.plotting.scalars import (
+from pvfiblets.plotting.colours.scalars import (
     DIRECTIONS,
     ORIENTATION,
     Numbers,

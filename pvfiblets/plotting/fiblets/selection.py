@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.mappers.picking import Layer
-from pvfiblets.plotting.coloured import added_up
+from pvfiblets.plotting.actors.coloured import added_up
 from pvfiblets.plotting.fiblets.filtering import BundledActor
-from pvfiblets.plotting.selection import AS_BEFORE, SelectionStyle
+from pvfiblets.plotting.filtering.selection import AS_BEFORE, SelectionStyle
 
 if TYPE_CHECKING:
     from os import PathLike
 
     from pvfiblets.mappers.fiblets import FibletMapper
+    from pvfiblets.plotting.colours.scalars import Scalars
     from pvfiblets.plotting.fiblets.profiles import Profile
     from pvfiblets.plotting.fiblets.selection_overlay import SelectionOverlay
-    from pvfiblets.plotting.scalars import Scalars
     from pvfiblets.query.measures.table import Table
 
 class SelectableActor(BundledActor):

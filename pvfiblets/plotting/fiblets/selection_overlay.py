@@ -18,16 +18,16 @@ from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor
 
 from pvfiblets.mappers import Colouring, FibletMapper, TubeMapper
-from pvfiblets.mappers.line_tubes import Tubes
+from pvfiblets.mappers.effects.line_tubes import Tubes
+from pvfiblets.mappers.effects.shading import Silhouette
+from pvfiblets.mappers.frames.scene import partly_shown, renderers_of, to_array
+from pvfiblets.mappers.frames.windows import weak
 from pvfiblets.mappers.picking import Layer
-from pvfiblets.mappers.scene import partly_shown, renderers_of, to_array
-from pvfiblets.mappers.shading import Silhouette
-from pvfiblets.mappers.windows import weak
 from pvfiblets.streamlines import Streamlines
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.mappers.shader_effects import Draw
+    from pvfiblets.mappers.effects.shader_effects import Draw
     from pvfiblets.plotting.fiblets.selection import SelectableActor
     from pvfiblets.tubes.spline_tubes import SplineTubes
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 from typing import Any
 
 from pvfiblets.engine.fiblets.style import LARGEST_DISC
-from pvfiblets.plotting import shared_settings as shared
 from pvfiblets.plotting.fiblets.looks import check_look
-from pvfiblets.plotting.setting_places import COLOURS, LATER, MAPPER, OPTIONS, OWN, PROPERTY, Effect, Switch
-from pvfiblets.plotting.settings import Row, Setting, Settings, number, truth
+from pvfiblets.plotting.settings import shared
+from pvfiblets.plotting.settings.places import COLOURS, LATER, MAPPER, OPTIONS, OWN, PROPERTY, Effect, Switch
+from pvfiblets.plotting.settings.settings import Row, Setting, Settings, number, truth
 
 STYLES = ("surface", "halo", "ink", "density", "ends")  # values of `FibletSettings.style`
 
@@ -220,7 +220,7 @@ class FibletSettings(Settings):
         "Light and shade have their full strength (Zöckler et al. 1996; Mallo et al. 2005), from any side.\n"
         "Off, they are gentle, and colours of a scalar bar stay unchanged. It needs ``lighting``.",
         argument=False,
-        where=Switch("pvfiblets.mappers.shading:Illuminated"),
+        where=Switch("pvfiblets.mappers.effects.shading:Illuminated"),
         row=Row("Cylinders", "Reflect lights as thin cylinders do.", "Shading",
                 matters=lambda s: s["lighting"]),
     )  # fmt: skip
@@ -236,7 +236,7 @@ class FibletSettings(Settings):
         "cut each other. ``None``, the default, is 8 times the width. ``color`` (``'white'``):\n"
         "``'background'`` for the renderer's.",
         argument=False,
-        where=Effect("pvfiblets.mappers.shading:Halos"),
+        where=Effect("pvfiblets.mappers.effects.shading:Halos"),
         row=Row("Halos", "Gaps around lines, wider where other objects are farther behind.", "Shading",
                 matters=lambda s: s["style"] == STYLES[0]),
     )  # fmt: skip

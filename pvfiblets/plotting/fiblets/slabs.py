@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.region_sources import direction_of
+from pvfiblets.plotting.filtering.region_sources import direction_of
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.fiblets.actor import FibletActor

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from pvfiblets import formats
+from pvfiblets.codec.editing.point_arrays import unit_colours, with_coded_values, with_point_colours
+from pvfiblets.codec.editing.point_arrays import with_point_values as add_values
 from pvfiblets.codec.fibletset import FibletSet
-from pvfiblets.codec.point_arrays import unit_colours, with_coded_values, with_point_colours
-from pvfiblets.codec.point_arrays import with_point_values as add_values
 from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.formats.attachments import is_values_file, name_of, values_for
 from pvfiblets.images.sources import as_image, is_image
@@ -21,16 +21,16 @@ from pvfiblets.invalid_points import Invalid, valid_points
 from pvfiblets.line_cells import NOT_LINES
 from pvfiblets.lines import refuse_words, rows_of
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
+from pvfiblets.plotting.colours.same_names import Preference, with_preference
+from pvfiblets.plotting.colours.scalars import UNNAMED, are_colours, magnitudes
 from pvfiblets.plotting.fiblets.scalars import refuse_unknown
-from pvfiblets.plotting.same_names import Preference, with_preference
-from pvfiblets.plotting.scalars import UNNAMED, are_colours, magnitudes
 from pvfiblets.query.measures.measures import Distance, measure
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.addresses import path_of
 from pvfiblets.support.summary import warn_of_losses
 
 if TYPE_CHECKING:
-    from pvfiblets.codec.compress import PerPoint
+    from pvfiblets.codec.encoding.compress import PerPoint
 
 CODING_ERROR = "coding_error"
 Colours: TypeAlias = str | np.ndarray | VolumeSource | Distance | None
@@ -68,7 +68,7 @@ def as_fiblets(
         return with_point_values(with_preference(source, preference), scalars, rgb)
     streamlines = with_preference(as_streamlines(source), preference)
     _warn_of_nothing(streamlines)
-    from pvfiblets.codec.compress import choose_per_point, compress  # compressed sources need no compiler
+    from pvfiblets.codec.encoding.compress import choose_per_point, compress  # compressed sources need no compiler
 
     if is_values_file(scalars, streamlines):
         formats.attach(streamlines, scalars)

@@ -12,20 +12,20 @@ import pyvista as pv
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.halos import HaloMapper, HaloOptions
-from pvfiblets.plotting.coloured import added_up
-from pvfiblets.plotting.filter_state import Choices
+from pvfiblets.plotting.actors.coloured import added_up
+from pvfiblets.plotting.actors.mapper_words import PlottedLines
+from pvfiblets.plotting.colours.opacities import LineActor
+from pvfiblets.plotting.filtering.line_subject import LineSubject
+from pvfiblets.plotting.filtering.state import Choices
 from pvfiblets.plotting.halos.settings import LOOKS, HaloLineSettings, HaloPointSettings
 from pvfiblets.plotting.halos.sources import Held, coloured, filtered, find_halo_scalars, halo_parts
 from pvfiblets.plotting.halos.style import LookSettings, Spacing
-from pvfiblets.plotting.line_opacities import LineActor
-from pvfiblets.plotting.line_subject import LineSubject
-from pvfiblets.plotting.mapper_words import PlottedLines
-from pvfiblets.plotting.setting_places import OPTIONS
-from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.settings.places import OPTIONS
+from pvfiblets.plotting.settings.settings import Given
 from pvfiblets.streamlines import Streamlines
 
 if TYPE_CHECKING:
-    from pvfiblets.plotting.scalars import Scalars
+    from pvfiblets.plotting.colours.scalars import Scalars
 
 BACKGROUND = "background"
 

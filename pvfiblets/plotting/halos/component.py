@@ -1,7 +1,7 @@
 """``plotter.add_halo_lines(...)``, ``plotter.halo_lines``, and the same of points.
 
 PyVista finds this module by four entry points and imports it when a plotter is first asked for one of the names. A
-component lives as long as its plotter; its life cycle is that of `pvfiblets.plotting.actor_registry`.
+component lives as long as its plotter; its life cycle is that of `pvfiblets.plotting.actors.registry`.
 """
 
 from __future__ import annotations
@@ -12,21 +12,21 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.call_signature import plotter_method
 from pvfiblets.plotting.components import register
 from pvfiblets.plotting.halos.settings import HaloLineSettings, HaloPointSettings
-from pvfiblets.plotting.mesh_arguments import LineCommon
-from pvfiblets.plotting.screenshot import PrintableComponent
-from pvfiblets.plotting.setting_places import OPTIONS
-from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.plotter_methods.screenshot import PrintableComponent
+from pvfiblets.plotting.settings.call_signature import plotter_method
+from pvfiblets.plotting.settings.mesh_arguments import LineCommon
+from pvfiblets.plotting.settings.places import OPTIONS
+from pvfiblets.plotting.settings.settings import Given
 
 if TYPE_CHECKING:
     from os import PathLike
 
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.halos import HaloLines, HaloPoints
+    from pvfiblets.plotting.colours.same_names import Preference
     from pvfiblets.plotting.halos.actors import HaloLineActor, HaloPointActor
-    from pvfiblets.plotting.same_names import Preference
     from pvfiblets.streamlines import Streamlines
 
     Lines: TypeAlias = pv.PolyData | Streamlines | FibletSet | HaloLines | np.ndarray | list[Any] | tuple[Any, Any]
@@ -130,10 +130,10 @@ class HaloLinesComponent(PrintableComponent["HaloLineActor"]):
         >>> actor.threshold = 0.0
         """
         from pvfiblets.mappers.halos import HaloOptions
-        from pvfiblets.plotting.colours import active_scalars
+        from pvfiblets.plotting.colours.colours import active_scalars
+        from pvfiblets.plotting.colours.scalars import refuse_numbers
         from pvfiblets.plotting.halos.actors import HaloLineActor
         from pvfiblets.plotting.halos.sources import as_lines
-        from pvfiblets.plotting.scalars import refuse_numbers
 
         HaloOptions(**settings.at(OPTIONS))  # errors are raised before the slow part
         if scalars is None:
@@ -227,7 +227,7 @@ class HaloPointsComponent(PrintableComponent["HaloPointActor"]):
         >>> actor = pl.add_halo_points(ball, point_size=0.15, halo_size=1.5, max_displacement=4)
         """
         from pvfiblets.mappers.halos import HaloOptions
-        from pvfiblets.plotting.colours import active_scalars
+        from pvfiblets.plotting.colours.colours import active_scalars
         from pvfiblets.plotting.halos.actors import HaloPointActor
         from pvfiblets.plotting.halos.sources import as_points, read_points
 

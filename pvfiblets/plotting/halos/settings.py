@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets.plotting import shared_settings as shared
-from pvfiblets.plotting.setting_places import OPTIONS, OWN, Place
-from pvfiblets.plotting.settings import Argument, Setting, Settings, truth
+from pvfiblets.plotting.settings import shared
+from pvfiblets.plotting.settings.places import OPTIONS, OWN, Place
+from pvfiblets.plotting.settings.settings import Argument, Setting, Settings, truth
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.halos.style import Threshold

@@ -16,10 +16,8 @@ from pvfiblets.halos.build import FILTER, SCALARS, as_halo_lines, as_halo_points
 from pvfiblets.halos.measures import arc_lengths, line_lengths
 from pvfiblets.images.sources import as_image, is_image
 from pvfiblets.lines import SourceData, gather, has_name, read_lines, with_values
-from pvfiblets.plotting.filter_state import unique_name
-from pvfiblets.plotting.line_subject import Parts
-from pvfiblets.plotting.same_names import Preference, with_preference
-from pvfiblets.plotting.scalars import (
+from pvfiblets.plotting.colours.same_names import Preference, with_preference
+from pvfiblets.plotting.colours.scalars import (
     DIRECTIONS,
     NAME_ONE,
     UNNAMED,
@@ -30,6 +28,8 @@ from pvfiblets.plotting.scalars import (
     find_scalars,
     point_scalars,
 )
+from pvfiblets.plotting.filtering.line_subject import Parts
+from pvfiblets.plotting.filtering.state import unique_name
 from pvfiblets.streamlines import Streamlines
 
 ARC_LENGTH, LENGTH = "arc_length", "length"

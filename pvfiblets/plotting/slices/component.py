@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.mappers.scene import partly_shown
-from pvfiblets.plotting.call_signature import document, plotter_method, refuse_unknown, split_arguments
+from pvfiblets.mappers.frames.scene import partly_shown
 from pvfiblets.plotting.components import register
-from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.settings.call_signature import document, plotter_method, refuse_unknown, split_arguments
+from pvfiblets.plotting.settings.settings import Given
 from pvfiblets.plotting.slices.settings import SliceCommon, SliceSettings
 
 if TYPE_CHECKING:

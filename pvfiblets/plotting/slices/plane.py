@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonCore import vtkWeakReference
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkRenderingCore import vtkTexture
 
-from pvfiblets.mappers.scene import partly_shown
+from pvfiblets.mappers.frames.scene import partly_shown
 from pvfiblets.slices.frames import checked_position, covered, grid_of, plane_axes, turned
 
 if TYPE_CHECKING:

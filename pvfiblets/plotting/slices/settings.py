@@ -6,9 +6,9 @@ import math
 from numbers import Integral, Real
 from typing import Any
 
-from pvfiblets.plotting.setting_places import Place
-from pvfiblets.plotting.settings import Argument, Row, Setting, Settings, truth
-from pvfiblets.plotting.shared_settings import LIMITS, MAPS, Common, colour_map
+from pvfiblets.plotting.settings.places import Place
+from pvfiblets.plotting.settings.settings import Argument, Row, Setting, Settings, truth
+from pvfiblets.plotting.settings.shared import LIMITS, MAPS, Common, colour_map
 
 
 class _Layer(Place):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.settings.settings import Given
 from pvfiblets.plotting.slices.layer import SliceLayer
 from pvfiblets.plotting.slices.plane import SlicePlane
 from pvfiblets.plotting.slices.settings import SliceSettings

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
-from pvfiblets.mappers.kept_views import KeptViews
+from pvfiblets.mappers.frames.kept_views import KeptViews
 from pvfiblets.plotting.slices.contours import PaneContours
 from pvfiblets.plotting.slices.layer import SliceLayer
 from pvfiblets.plotting.slices.layouts import LAYOUTS, viewports

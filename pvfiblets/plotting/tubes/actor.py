@@ -10,22 +10,22 @@ import pyvista as pv
 
 from pvfiblets.lines import SourceData
 from pvfiblets.mappers.colouring import Colouring
-from pvfiblets.mappers.shading import Silhouette
+from pvfiblets.mappers.effects.shading import Silhouette
 from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
-from pvfiblets.plotting.coloured import added_up
-from pvfiblets.plotting.filter_state import Choices
-from pvfiblets.plotting.line_opacities import LineActor
-from pvfiblets.plotting.line_subject import LineSubject
-from pvfiblets.plotting.mapper_words import PlottedLines
-from pvfiblets.plotting.setting_places import OPTIONS
-from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.actors.coloured import added_up
+from pvfiblets.plotting.actors.mapper_words import PlottedLines
+from pvfiblets.plotting.colours.opacities import LineActor
+from pvfiblets.plotting.filtering.line_subject import LineSubject
+from pvfiblets.plotting.filtering.state import Choices
+from pvfiblets.plotting.settings.places import OPTIONS
+from pvfiblets.plotting.settings.settings import Given
 from pvfiblets.plotting.tubes.parts import tube_parts
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.tubes.sources import find_tube_scalars, with_built_in, with_node_values
 from pvfiblets.tubes.spline_tubes import SplineTubes
 
 if TYPE_CHECKING:
-    from pvfiblets.plotting.scalars import Scalars
+    from pvfiblets.plotting.colours.scalars import Scalars
 
 
 _OUTLINE = {"color": "white", "width": 2.0, "tubes": None}

@@ -2,7 +2,7 @@
 
 PyVista finds this module by two entry points and imports it when a plotter is first asked for
 either name. :class:`SplineTubesComponent` lives as long as its plotter; its life cycle is that of
-`pvfiblets.plotting.actor_registry`.
+`pvfiblets.plotting.actors.registry`.
 """
 
 from __future__ import annotations
@@ -13,19 +13,19 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.actor_registry import ActorRegistry
-from pvfiblets.plotting.call_signature import plotter_method
+from pvfiblets.plotting.actors.registry import ActorRegistry
 from pvfiblets.plotting.components import register
-from pvfiblets.plotting.mesh_arguments import ThickLineCommon
-from pvfiblets.plotting.setting_places import OPTIONS
-from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.settings.call_signature import plotter_method
+from pvfiblets.plotting.settings.mesh_arguments import ThickLineCommon
+from pvfiblets.plotting.settings.places import OPTIONS
+from pvfiblets.plotting.settings.settings import Given
 from pvfiblets.plotting.tubes.settings import TubeSettings
 
 if TYPE_CHECKING:
     from os import PathLike
 
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.plotting.same_names import Preference
+    from pvfiblets.plotting.colours.same_names import Preference
     from pvfiblets.plotting.tubes.actor import TubeActor
     from pvfiblets.streamlines import Streamlines
     from pvfiblets.tubes.spline_tubes import SplineTubes
@@ -148,8 +148,8 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         >>> actor = pl.add_spline_tubes(nodes, tangents=slopes, radius=[1, 2], color="tomato")
         """
         from pvfiblets.mappers.tubes import TubeOptions
-        from pvfiblets.plotting.colours import active_scalars
-        from pvfiblets.plotting.scalars import refuse_numbers
+        from pvfiblets.plotting.colours.colours import active_scalars
+        from pvfiblets.plotting.colours.scalars import refuse_numbers
         from pvfiblets.plotting.tubes.actor import TubeActor
         from pvfiblets.plotting.tubes.sources import as_tubes
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.plotting.line_subject import Parts
+from pvfiblets.plotting.filtering.line_subject import Parts
 from pvfiblets.query.selection.point_flags import ALL, ANY
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.ragged import offsets_from_counts

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from pvfiblets.plotting import shared_settings as shared
-from pvfiblets.plotting.setting_places import LATER, OPTIONS
-from pvfiblets.plotting.settings import NoSetting, Row, Setting, Settings
+from pvfiblets.plotting.settings import shared
+from pvfiblets.plotting.settings.places import LATER, OPTIONS
+from pvfiblets.plotting.settings.settings import NoSetting, Row, Setting, Settings
 
 _OF_LINES = "{name} is for lines, and spline tubes are surfaces; "
 

@@ -21,8 +21,8 @@ from pvfiblets.lines import (
     rows_of,
     with_values,
 )
-from pvfiblets.plotting.same_names import Preference, with_preference
-from pvfiblets.plotting.scalars import (
+from pvfiblets.plotting.colours.same_names import Preference, with_preference
+from pvfiblets.plotting.colours.scalars import (
     DIRECTIONS,
     NAME_ONE,
     UNNAMED,

@@ -11,13 +11,13 @@ import pyvista as pv
 
 from pvfiblets.mappers.engine_options import Options
 from pvfiblets.mappers.volumes import VolumeMapper
-from pvfiblets.plotting.clipping import ClippedActor
-from pvfiblets.plotting.coloured import added_up
-from pvfiblets.plotting.colours import make_colouring, update_table
-from pvfiblets.plotting.linked_property import is_own_write, own_writes
-from pvfiblets.plotting.mapper_words import NO_ATTRIBUTE, Plotted
-from pvfiblets.plotting.scalars import Scalars
-from pvfiblets.plotting.settings import Given, NoSetting
+from pvfiblets.plotting.actors.coloured import added_up
+from pvfiblets.plotting.actors.linked_property import is_own_write, own_writes
+from pvfiblets.plotting.actors.mapper_words import NO_ATTRIBUTE, Plotted
+from pvfiblets.plotting.colours.colours import make_colouring, update_table
+from pvfiblets.plotting.colours.scalars import Scalars
+from pvfiblets.plotting.filtering.clipping import ClippedActor
+from pvfiblets.plotting.settings.settings import Given, NoSetting
 from pvfiblets.plotting.volumes.blending import BLENDING, mode_of_blending
 from pvfiblets.plotting.volumes.opacity import (
     along_logarithm,

@@ -2,7 +2,7 @@
 
 PyVista finds this module by two entry points and imports it when a plotter is first asked for either
 name. :class:`RaycastVolumesComponent` lives as long as its plotter; its life cycle is that of
-`pvfiblets.plotting.actor_registry`.
+`pvfiblets.plotting.actors.registry`.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.actor_registry import ActorRegistry
-from pvfiblets.plotting.call_signature import plotter_method
+from pvfiblets.plotting.actors.registry import ActorRegistry
 from pvfiblets.plotting.components import register
-from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.settings.call_signature import plotter_method
+from pvfiblets.plotting.settings.settings import Given
 from pvfiblets.plotting.volumes.blending import mode_of_blending
 from pvfiblets.plotting.volumes.settings import VolumeSettings
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 from numbers import Real
 from typing import Any
 
-from pvfiblets.plotting import shared_settings as shared
-from pvfiblets.plotting.setting_places import OWN, Effect, Own, Place
-from pvfiblets.plotting.settings import Argument, NoSetting, Row, Setting, Settings, truth
+from pvfiblets.plotting.settings import shared
+from pvfiblets.plotting.settings.places import OWN, Effect, Own, Place
+from pvfiblets.plotting.settings.settings import Argument, NoSetting, Row, Setting, Settings, truth
 from pvfiblets.volumes.raycast_options import INTEGRATORS, MODES, PROJECTIONS, REFINEMENTS
 from pvfiblets.volumes.volume import FILTERS
 
@@ -355,5 +355,5 @@ class VolumeSettings(Settings):
         "(``True``): mean over neighbouring pixels of the same surface, in place of grain.",
         kind="bool | dict[str, Any]",
         header="bool or dict, default: False",
-        where=Effect("pvfiblets.mappers.ray_occlusion:RayOcclusion"),
+        where=Effect("pvfiblets.mappers.effects.ray_occlusion:RayOcclusion"),
     )

@@ -314,7 +314,7 @@ def _along(data: FibletSet | Streamlines, chosen: Any, values: Any, n: int) -> t
         if values in part.per_point:
             numbers = part.per_point[values]
         else:
-            from ...codec.compress import compress
+            from ...codec.encoding.compress import compress
             from ..measures.measures import measure
 
             found = measure(compress(part, exact=True), values)

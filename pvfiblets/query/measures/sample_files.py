@@ -87,7 +87,7 @@ def _write_lines(target: str, data: Any, name: str, values: npt.NDArray[np.float
     """Write a tractogram with one more array."""
     numbers = values.astype(np.float32)
     if not isinstance(data, Streamlines) and registry.suffix_of(target) == ".fiblets":
-        from pvfiblets.codec.point_arrays import with_point_values
+        from pvfiblets.codec.editing.point_arrays import with_point_values
 
         if per_point:
             with_point_values(data, name, numbers, BITS).save(target)

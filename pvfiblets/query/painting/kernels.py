@@ -19,7 +19,7 @@ def are_compiled() -> bool:
 
 def compile_all() -> None:
     """Compile or load all kernels."""
-    from ...codec.compress import compress
+    from ...codec.encoding.compress import compress
     from .live import LiveRegions
     from .painter import RegionPainter
 

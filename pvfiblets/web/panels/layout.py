@@ -8,11 +8,12 @@ from typing import Any
 from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import client, rca
 
-from pvfiblets.web.panels import atlas_tab, dialogs, matrix_panel, painting_tab, slices_tab, tabs
+from pvfiblets.web.panels import dialogs, matrix_panel
 from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels import layers as panels
 from pvfiblets.web.panels.elements import html, v3
-from pvfiblets.web.panels.painting_tab import PAINTING
+from pvfiblets.web.panels.tabs import atlas_tab, painting_tab, slices_tab, tabs
+from pvfiblets.web.panels.tabs.painting_tab import PAINTING
 
 VIEW = "view"
 VIEWS = (

@@ -18,10 +18,10 @@ from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.charts import short
 from pvfiblets.web.panels.describe import typed
 from pvfiblets.web.panels.elements import html, v3
-from pvfiblets.web.scene.file_kinds import TABLES
-from pvfiblets.web.scene.label_images import BESIDE
-from pvfiblets.web.scene.loading import Cancelled
+from pvfiblets.web.scene.files.file_kinds import TABLES
+from pvfiblets.web.scene.files.loading import Cancelled
 from pvfiblets.web.scene.matrix import COLOURS, choices, colour_range
+from pvfiblets.web.scene.slices.label_images import BESIDE
 from pvfiblets.web.session.document import LINES, Matrix
 from pvfiblets.web.values import number
 

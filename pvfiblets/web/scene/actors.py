@@ -16,7 +16,7 @@ from pvfiblets.web.session.document import LINES, Clip, Filters, Ids, Layer, Sou
 from pvfiblets.web.session.shapes import make_predicate, make_region, planes_of
 
 if TYPE_CHECKING:
-    from pvfiblets.web.scene.loading import Loaded
+    from pvfiblets.web.scene.files.loading import Loaded
     from pvfiblets.web.session.shapes import Load
 
     Colours = Callable[[Source], Any]  # from where a volume comes from to the volume that colours or filters lines

@@ -1,6 +1,7 @@
 """The properties of tractograms, tubes, volumes, meshes and images of slices, in the order of a panel.
 
-Settings of actors are found in their declarations (`pvfiblets.plotting.settings`); this module adds the page's own.
+Settings of actors are found in their declarations (`pvfiblets.plotting.settings.settings`); this module adds the page's
+own.
 """
 
 from __future__ import annotations
@@ -9,16 +10,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from pvfiblets.plotting import shared_settings as shared
 from pvfiblets.plotting.fiblets.looks import LOOKS
 from pvfiblets.plotting.fiblets.settings import FibletSettings
-from pvfiblets.plotting.settings import Setting, Settings
+from pvfiblets.plotting.settings import shared
+from pvfiblets.plotting.settings.settings import Setting, Settings
 from pvfiblets.plotting.slices.settings import MEANING, SliceSettings
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.volumes.settings import VolumeSettings
-from pvfiblets.web.scene.glyph_layers import GLYPHS, VECTORS
-from pvfiblets.web.scene.glyph_layers import ROWS as GLYPH_ROWS
 from pvfiblets.web.scene.properties import Choices, Property
+from pvfiblets.web.scene.slices.glyph_layers import GLYPHS, VECTORS
+from pvfiblets.web.scene.slices.glyph_layers import ROWS as GLYPH_ROWS
 
 
 def value_names(fiblets: Any) -> list[str]:
@@ -29,8 +30,8 @@ def value_names(fiblets: Any) -> list[str]:
 
 
 def _line_scalars(fiblets: Any) -> Choices:
+    from pvfiblets.plotting.colours.scalars import COUNTED, ORIENTATION, UNITS
     from pvfiblets.plotting.fiblets.scalars import DENSITY, ENDS, GROUP, ID, RANDOM
-    from pvfiblets.plotting.scalars import COUNTED, ORIENTATION, UNITS
 
     usual: list[tuple[Any, str]] = [(ORIENTATION, "orientation"), (None, "one colour"), (RANDOM, "a colour each")]
     ends = (ENDS, "direction from end to end")
@@ -46,7 +47,7 @@ def _line_scalars(fiblets: Any) -> Choices:
 
 
 def _tube_scalars(tubes: Any) -> Choices:
-    from pvfiblets.plotting.scalars import UNITS
+    from pvfiblets.plotting.colours.scalars import UNITS
     from pvfiblets.plotting.tubes.sources import BUILT_IN
 
     names = dict.fromkeys([*BUILT_IN, *tubes.values, *tubes.tube_values])

@@ -35,7 +35,7 @@ class LayerQueries:
 
     def arrays(self, layer_id: str) -> list[dict[str, str]]:
         """Return the values that a layer can be filtered by and that have histograms: ``name``, ``title``."""
-        from pvfiblets.plotting.scalars import UNITS
+        from pvfiblets.plotting.colours.scalars import UNITS
         from pvfiblets.web.scene.layer_properties import value_names
 
         layer = self.scene.layer(layer_id)

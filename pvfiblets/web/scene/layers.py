@@ -10,16 +10,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from pvfiblets.plotting.colours.scalars import ORIENTATION
 from pvfiblets.plotting.fiblets.looks import LOOKS, PLAIN, look_of, settings_of
 from pvfiblets.plotting.fiblets.settings import FibletSettings
-from pvfiblets.plotting.scalars import ORIENTATION
-from pvfiblets.plotting.settings import Settings, arguments
+from pvfiblets.plotting.settings.settings import Settings, arguments
 from pvfiblets.plotting.slices.settings import MEANING, SliceSettings
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.volumes.settings import VolumeSettings
-from pvfiblets.web.scene.glyph_layers import GLYPHS
 from pvfiblets.web.scene.layer_properties import IMAGE, MESH, TRACTOGRAM, TUBES, VOLUME
 from pvfiblets.web.scene.properties import TYPES, Choices, Property
+from pvfiblets.web.scene.slices.glyph_layers import GLYPHS
 from pvfiblets.web.session.document import KINDS, LINES, Layer, volume_in
 from pvfiblets.web.values import shown
 

@@ -15,7 +15,7 @@ from pvfiblets.web.values import mapping, number, shown, text, truth, whole
 if TYPE_CHECKING:
     from pvfiblets.plotting.connectomes.graph import ConnectomeGraph, ConnectomePick
     from pvfiblets.query.connectome.matrix import Connectome
-    from pvfiblets.web.scene.loading import Cancel, Progress
+    from pvfiblets.web.scene.files.loading import Cancel, Progress
     from pvfiblets.web.scene.scene import Scene
     from pvfiblets.web.session.store import Store
 

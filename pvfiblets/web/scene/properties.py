@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
-from pvfiblets.plotting.settings import SAME, Row, Setting
+from pvfiblets.plotting.settings.settings import SAME, Row, Setting
 from pvfiblets.web.values import colour, number, numbers, shown, text, truth, whole
 
 TYPES = ("choice", "number", "range", "numbers", "colour", "bool", "text")

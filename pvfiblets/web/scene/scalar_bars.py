@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
-from pvfiblets.mappers.scene import USUAL_DPI
-from pvfiblets.plotting.scalar_bar_labels import label_format, label_text
+from pvfiblets.mappers.frames.scene import USUAL_DPI
+from pvfiblets.plotting.colours.scalar_bar_labels import label_format, label_text
 from pvfiblets.web.scene.scalar_bar_layout import MOST_LABELS, Place, Wanted, arrange
 from pvfiblets.web.session.document import Layer
 

@@ -26,19 +26,19 @@ from pvfiblets.web.scene.actors import (
 )
 from pvfiblets.web.scene.bundles import SceneBundles
 from pvfiblets.web.scene.cameras import Cameras
-from pvfiblets.web.scene.canvas import Canvas
 from pvfiblets.web.scene.distance_label import show_distances
+from pvfiblets.web.scene.files.loading import Cancel, Files, Loaded, Progress
 from pvfiblets.web.scene.filters import SceneFilters
 from pvfiblets.web.scene.layer_queries import LayerQueries
-from pvfiblets.web.scene.loading import Cancel, Files, Loaded, Progress
 from pvfiblets.web.scene.matrix import SceneMatrix
 from pvfiblets.web.scene.measurements import SceneMeasurements
-from pvfiblets.web.scene.painted import ScenePainting
 from pvfiblets.web.scene.regions import SceneRegions
 from pvfiblets.web.scene.scalar_bars import Bars
 from pvfiblets.web.scene.selection import SceneSelection
-from pvfiblets.web.scene.slice_images import SliceImages
-from pvfiblets.web.scene.slicing import Slicing
+from pvfiblets.web.scene.slices.canvas import Canvas
+from pvfiblets.web.scene.slices.painted import ScenePainting
+from pvfiblets.web.scene.slices.slice_images import SliceImages
+from pvfiblets.web.scene.slices.slicing import Slicing
 from pvfiblets.web.session.document import (
     LINES,
     Clip,

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from pvfiblets.web.panels.writing import EXPORTS, write
-from pvfiblets.web.scene.originals import original_of
+from pvfiblets.web.panels.files.writing import EXPORTS, write
+from pvfiblets.web.scene.files.originals import original_of
 from pvfiblets.web.session.document import LINES, Ids, Layer
 from pvfiblets.web.values import number, numbers, plain, shown, truth, whole
 

@@ -11,7 +11,7 @@ from pvfiblets.plotting.fiblets.looks import check_look
 from pvfiblets.support.memory import CAN_LIMIT, of_machine, parse, shown
 from pvfiblets.support.nifti_space import Matrix, Units
 from pvfiblets.support.vtk_space import Space
-from pvfiblets.web.scene.file_kinds import is_tractogram_folder
+from pvfiblets.web.scene.files.file_kinds import is_tractogram_folder
 
 MEBIBYTE = 1024 * 1024
 SMALLEST_MEMORY = 640 * MEBIBYTE

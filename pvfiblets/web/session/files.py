@@ -21,7 +21,7 @@ from pvfiblets.web.session.painting import as_json
 from pvfiblets.web.session.reading import VERSION, Prepared, read_session
 
 if TYPE_CHECKING:
-    from pvfiblets.web.scene.loading import Cancel, Progress
+    from pvfiblets.web.scene.files.loading import Cancel, Progress
     from pvfiblets.web.scene.scene import Scene
 
 __all__ = [

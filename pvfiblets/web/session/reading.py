@@ -16,7 +16,7 @@ from pvfiblets.web.scene.cameras import check_camera
 from pvfiblets.web.scene.filters import MOST_CLIPS, check_filters
 from pvfiblets.web.scene.measurements import check_measurements
 from pvfiblets.web.scene.scene import LONGEST_NAME, MOST_LAYERS, MOST_VALUES
-from pvfiblets.web.scene.slicing import SliceView, check_view
+from pvfiblets.web.scene.slices.slicing import SliceView, check_view
 from pvfiblets.web.session.document import (
     KINDS,
     LINES,
@@ -36,7 +36,7 @@ from pvfiblets.web.session.shapes import CUTTING, check_shape, make_predicate, m
 from pvfiblets.web.values import colour, mapping, shown, text, truth, whole
 
 if TYPE_CHECKING:
-    from pvfiblets.web.scene.loading import Cancel, Progress
+    from pvfiblets.web.scene.files.loading import Cancel, Progress
     from pvfiblets.web.scene.scene import Scene
     from pvfiblets.web.session.store import Store
 

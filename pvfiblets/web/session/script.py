@@ -10,16 +10,16 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets.mappers.scene import USUAL_DPI
+from pvfiblets.mappers.frames.scene import USUAL_DPI
 from pvfiblets.plotting.slices.settings import MEANING
 from pvfiblets.support.nifti_space import chosen
 from pvfiblets.support.surface_space import tkras_chosen
 from pvfiblets.web.scene import layers
 from pvfiblets.web.scene.actors import split_cuts
-from pvfiblets.web.scene.glyph_layers import GLYPHS
-from pvfiblets.web.scene.glyph_layers import arguments as glyph_arguments
 from pvfiblets.web.scene.matrix import graph_looks
-from pvfiblets.web.scene.slicing import image_looks
+from pvfiblets.web.scene.slices.glyph_layers import GLYPHS
+from pvfiblets.web.scene.slices.glyph_layers import arguments as glyph_arguments
+from pvfiblets.web.scene.slices.slicing import image_looks
 from pvfiblets.web.session.document import LINES, Clip, Layer, Matrix, Source, volumes_of
 from pvfiblets.web.session.script_code import Python, code
 from pvfiblets.web.session.script_slices import bundle_lines, has_images, image_arguments, painting_lines, slicing_lines
@@ -391,7 +391,7 @@ class _Writer(ViewWriter):
         if shape["kind"] not in ("mesh", "labels"):
             self._imports.add("from pvfiblets import regions")
         elif shape["kind"] == "mesh" or shape["labels"] is None:
-            self._imports.add("from pvfiblets.plotting.region_sources import as_region")
+            self._imports.add("from pvfiblets.plotting.filtering.region_sources import as_region")
             if shape["kind"] == "mesh":
                 self._mesh(shape["path"])
         else:

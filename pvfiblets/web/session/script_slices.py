@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.web.scene.glyph_layers import VECTORS
-from pvfiblets.web.scene.slicing import normal_of
+from pvfiblets.web.scene.slices.glyph_layers import VECTORS
+from pvfiblets.web.scene.slices.slicing import normal_of
 from pvfiblets.web.session.document import LINES
 from pvfiblets.web.session.runs import runs_of
 from pvfiblets.web.session.script_code import Python

@@ -141,7 +141,7 @@ def shapes_in(condition: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
 def make_region(shape: Mapping[str, Any], load: Load) -> Region:
     """Return the region of a shape that was checked."""
     from pvfiblets import regions
-    from pvfiblets.plotting.region_sources import as_region
+    from pvfiblets.plotting.filtering.region_sources import as_region
 
     kind = shape["kind"]
     if kind == "plane":

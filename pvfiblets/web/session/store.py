@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.web.scene.loading import Cancel, Files, Loaded, Progress, Watch
+from pvfiblets.web.scene.files.loading import Cancel, Files, Loaded, Progress, Watch
 from pvfiblets.web.session.document import LINES, Layer, Matrix, Source, State
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class Store:
         """Return what a region is made of: the region of a mesh, or an image of labels."""
         key = kind, source = shape["kind"], Source(shape["path"], space=shape.get("space"))
         if key not in self.shapes:
-            from pvfiblets.plotting.region_sources import as_region
+            from pvfiblets.plotting.filtering.region_sources import as_region
 
             data = self.files.load(source, kind).data
             self.shapes[key] = as_region(data) if kind == "mesh" else data

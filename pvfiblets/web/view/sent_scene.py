@@ -16,8 +16,8 @@ import numpy as np
 
 from pvfiblets.page.scene import PageScene, encoded
 from pvfiblets.web.scene.distance_label import names_of
-from pvfiblets.web.scene.glyph_layers import GLYPHS
 from pvfiblets.web.scene.scalar_bars import bars_of
+from pvfiblets.web.scene.slices.glyph_layers import GLYPHS
 from pvfiblets.web.session.document import LINES
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ class SentScenes:
 
 def add_all(page: PageScene, plotter: Any) -> list[str]:
     """Set a page to a plotter's scene without measured distances; return its unsupported parts."""
-    from pvfiblets.plotting import page_scene  # PyVista is loaded by then
+    from pvfiblets.plotting.page import page_scene  # PyVista is loaded by then
 
     return page_scene.add_all(page, plotter, controls=False, besides=names_of(plotter))[0]
 

@@ -7,9 +7,9 @@ and large sets with fewer streamlines (:mod:`pvfiblets.web.view.pace`).
 
 Once the pointer rests, the full-resolution frame is sent at full quality; if the last one had all its pixels, without
 drawing again. Keys that move the cross-hair show panes of slices first, and the 3-D view in the next picture. It is
-drawn in pieces, and aborted at an event (:mod:`pvfiblets.mappers.incremental_frame`). If nothing happens then, the
-accumulation samples of ``plotter.picture.antialias`` are drawn, one between any two events, and their mean is sent when
-it is finished.
+drawn in pieces, and aborted at an event (:mod:`pvfiblets.mappers.frames.incremental_frame`). If nothing happens then,
+the accumulation samples of ``plotter.picture.antialias`` are drawn, one between any two events, and their mean is sent
+when it is finished.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.engine.pieces import PIECE
-from pvfiblets.mappers.incremental_frame import draw_in_pieces
-from pvfiblets.mappers.scene import reduce_detail
+from pvfiblets.mappers.frames.incremental_frame import draw_in_pieces
+from pvfiblets.mappers.frames.scene import reduce_detail
 from pvfiblets.web.server.rpc_allowlist import MOST_PIXELS
 from pvfiblets.web.view.encoding import encode
 from pvfiblets.web.view.pace import LEVELS, Level, Pace

@@ -26,7 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ....codec import layout
-from ....codec.point_arrays import colour_columns
+from ....codec.editing.point_arrays import colour_columns
 from ...errors import EngineError, GPUMemoryError
 from ...gl.bindings import BLOCKS, STORAGE
 from ...gl.uniform_struct import Field, UniformStruct

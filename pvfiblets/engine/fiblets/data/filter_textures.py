@@ -61,7 +61,7 @@ class FilterTextures:
     """A filter on the GPU.
 
     Filters speak of the set ``whole``; on the GPU lies ``drawn``, the same or some of its streamlines
-    (:mod:`pvfiblets.codec.restrict`).
+    (:mod:`pvfiblets.codec.editing.restrict`).
     """
 
     def __init__(self, ctx: moderngl.Context, whole: FibletSet, drawn: FibletSet, chunks: Sequence[Chunk]) -> None:

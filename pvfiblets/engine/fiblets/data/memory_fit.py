@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 import moderngl
 import numpy as np
 
-from ....codec.restrict import Restriction, even_share
+from ....codec.editing.restrict import Restriction, even_share
 from ....support.memory import free_host_memory
 from ...errors import EngineError, GPUMemoryError
 from ...gl.moderngl_extras import INTEGERS, GLExtras

@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ....codec import layout
-from ....codec.point_arrays import colour_columns, colours_of_points
+from ....codec.editing.point_arrays import colour_columns, colours_of_points
 from ....codec.point_values import PointValues, as_codes, code_values
 from ....query.measures.measures import curvature_values
 from ....support.value_reference import relative

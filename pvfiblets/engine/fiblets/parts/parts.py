@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ....codec import layout
-from ....codec.restrict import even_share, restrict
+from ....codec.editing.restrict import even_share, restrict
 
 if TYPE_CHECKING:
     from ....codec.fibletset import FibletSet

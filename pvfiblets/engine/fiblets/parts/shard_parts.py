@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from ....codec.join import concatenate
-from ....codec.restrict import even_share, restrict
+from ....codec.editing.join import concatenate
+from ....codec.editing.restrict import even_share, restrict
 from ....codec.shards.unread_set import UnreadSet
 from .parts import Box, Parts, Stretches
 

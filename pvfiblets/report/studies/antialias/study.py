@@ -263,7 +263,7 @@ class PictureWindow(Window):
 
     def reference(self, side: int, go_on: Callable[[], bool]) -> Pixels | None:
         """Return the mean of pictures whose camera is moved on a grid in the pixel; None where time runs out."""
-        from pvfiblets.mappers.shifted_cameras import shifted
+        from pvfiblets.mappers.frames.shifted_cameras import shifted
 
         window, total = self.plotter.render_window, np.zeros(())
         thin = [actor for actor in self.plotter.fiblets if actor.line_width == 1.0]

@@ -49,7 +49,7 @@ class Brain(NamedTuple):
 @cache
 def brain() -> Brain:
     """Make a small synthetic brain with a per-point array ``'height'``."""
-    from pvfiblets.codec.compress import compress
+    from pvfiblets.codec.encoding.compress import compress
     from pvfiblets.synthetic import brain_streamlines
 
     made = brain_streamlines(STREAMLINES, step=STEP, seed=7)
@@ -162,7 +162,7 @@ def _judged(picture: Shown, wrong: dict[str, Any], limits: dict[str, float], val
 
 def _tubes(ctx: moderngl.Context, pipeline: str) -> Scene:
     """Few lines as tubes; a ray meets the capsules of their segments."""
-    from pvfiblets.codec.restrict import restrict
+    from pvfiblets.codec.editing.restrict import restrict
     from pvfiblets.engine.fiblets.renderer import FibletRenderer
     from pvfiblets.engine.fiblets.style import FibletStyle
 

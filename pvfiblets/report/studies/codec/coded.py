@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from functools import partial
 
-from pvfiblets.codec.compress import compress as _compress
+from pvfiblets.codec.encoding.compress import compress as _compress
 
 compress = partial(_compress, exact=False)  # as `pvfiblets.compress`, without its default for small sets

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.codec.restrict import restrict
+from pvfiblets.codec.editing.restrict import restrict
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import EngineError
 

@@ -120,7 +120,7 @@ def measure_lines(cell: Row) -> Row:
     window = Window(cell["size"], multisampled=not cell["aliased"])
     plotter, load = window.plotter, time.perf_counter()
     if cell["method"] == FIBLETS:
-        from pvfiblets.codec.compress import compress
+        from pvfiblets.codec.encoding.compress import compress
         from pvfiblets.synthetic import brain_streamlines
 
         compress(brain_streamlines(10), exact=False)  # the codec compiles itself when first used

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from pvfiblets.codec.encode import Effort
+from pvfiblets.codec.encoding.encode import Effort
+from pvfiblets.codec.encoding.resample import resample
 from pvfiblets.codec.point_values import code_values
-from pvfiblets.codec.resample import resample
 from pvfiblets.report.studies.codec.coded import compress
 from pvfiblets.streamlines import Streamlines
 

@@ -75,7 +75,7 @@ def _subjects(options: Options, pv: Any) -> list[Subject]:
 
 def _lines_of_pixels(actor: Any) -> npt.NDArray[np.float64]:
     """Return (rows, columns) how many lines each pixel of the last picture holds, the lowest row first."""
-    from pvfiblets.mappers.windows import contexts_with
+    from pvfiblets.mappers.frames.windows import contexts_with
 
     (context,) = contexts_with(actor.mapper)
     slot = context.slots[actor.mapper.GetAddressAsString("")]

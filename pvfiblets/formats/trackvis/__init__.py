@@ -1,0 +1,1 @@
+"""TrackVis files (``.trk``, ``.trk.gz``). Start with ``trk.py``."""

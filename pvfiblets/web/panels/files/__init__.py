@@ -1,0 +1,4 @@
+"""Files of the page: opened, uploaded, exported, and sessions.
+
+What a file holds is read by the scene. Start with ``opening.py``.
+"""
