@@ -414,10 +414,10 @@ def test_convert_keeps_a_spatial_index_and_says_what_it_takes(tractogram, tmp_pa
     from pvfiblets.codec.files import convert
 
     source, target = tractogram[0], tmp_path / "a.fiblets"
-    plain, written, write = tmp_path / "plain.fiblets", [], convert.write_archive
+    plain, written, write = tmp_path / "plain.fiblets", [], convert.write
     assert main(["convert", str(source), str(plain), "--no-exact"]) == 0
     capsys.readouterr()
-    monkeypatch.setattr(convert, "write_archive", lambda path, *more: written.append(path) or write(path, *more))
+    monkeypatch.setattr(convert, "write", lambda path, *more, **how: written.append(path) or write(path, *more, **how))
     assert main(["convert", str(source), str(target), "--no-exact", "--index", "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     data = FibletSet.open(target)

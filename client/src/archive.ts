@@ -65,6 +65,12 @@ const KINDS: Record<string, [number, new (buffer: ArrayBuffer, at: number, n: nu
   "<i8": [8, BigInt64Array], "<u8": [8, BigUint64Array],
 };
 
+/** A buffer as an array of a type; null of a type that is not of numbers. */
+export function numbersOf(type: string, buffer: ArrayBuffer): Numbers | null {
+  const kind = KINDS[type];
+  return kind ? new kind[1](buffer, 0, buffer.byteLength / kind[0]) : null;
+}
+
 /** Read one .npy array of a piece of a file; of a type that is not of numbers, nothing. */
 function readNpy(bytes: Uint8Array, name: string): NpyArray | null {
   const damaged = new FileError(`The member ${name} of the file is damaged. ${AGAIN}`);

@@ -130,9 +130,9 @@ export class FibletSet {
     const { header, arrays } = archive;
     if (header.format !== "fiblets")
       throw new FileError("The file is no .fiblets file: its header says something else.");
-    if (header.version !== 2)
+    if (![2, 4].includes(header.version))
       throw new FileError(
-        `The file is of version ${header.version}; this page reads version 2. Make the page again with a newer pvfiblets.`,
+        `The file is of version ${header.version}; this page reads versions 2 and 4. Make the page again with a newer pvfiblets.`,
       );
     const p = (this.parameters = header.parameters),
       n = (this.fiblets = header.n_fiblets);

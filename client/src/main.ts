@@ -1,6 +1,7 @@
 /** The page's start: its scene, its data, and the errors that stop it, each as one sentence on the page. */
 
 import { Archive, needPages, openParts, readArchive } from "./archive";
+import { unpacked } from "./packed";
 import { PAGE_BITS, fromBase64 } from "./engine";
 import { Controls } from "./controls";
 import { attachMouse } from "./mouse";
@@ -38,7 +39,7 @@ async function archivesOf(scene: Scene, data: Uint8Array[], loading: Loading[]):
     if (layer.kind !== "fiblets") return;
     const { file, bytes } = scene.data[layer.data];
     if (file === undefined) {
-      found.set(layer.data, readArchive(data[layer.data]));
+      found.set(layer.data, await unpacked(readArchive(data[layer.data])));
       return;
     }
     const remote = new Remote(file, bytes), values = layer.colours.values === undefined ? [] : [layer.colours.values];

@@ -75,6 +75,11 @@ def add_convert(commands: Any) -> None:
              "it is read like one file, or in parts",
     )
     convert.add_argument(
+        "--small", action="store_true",
+        help="write 0.55 to 0.75 times the bytes; opening such a file decodes it into memory. A .fiblets file is "
+             "packed as it is",
+    )  # fmt: skip
+    convert.add_argument(
         "--index",
         action="store_true",
         help="store a spatial index for painted regions in the .fiblets file, a third of its size (default: made "

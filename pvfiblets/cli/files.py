@@ -40,6 +40,7 @@ def convert(
     max_value_error: float | None,
     exact: bool | None,
     shards: int | None,
+    small: bool,
     index: bool,
     double: bool,
     verify: Literal["all", "sample"],
@@ -72,6 +73,7 @@ def convert(
         result = work(
             source,
             target,
+            small=small,
             step="auto" if step is None else step,
             max_error=max_error,
             max_angle=max_angle,
@@ -89,10 +91,10 @@ def convert(
             result["index_seconds"] = 0.0 if made is None else made.seconds
     else:
         own = (step, max_error, max_value_error, exact, shards) != (None,) * 5 or max_angle != DEFAULT_ANGLE
-        if own or per_point or verify != "all":
+        if own or small or per_point or verify != "all":
             raise ValueError(
-                "--step, --max-error, --max-angle, --max-value-error, --exact, --per-point, --verify and --shards are "
-                f"for {COMPRESSED} files; {target} is of another format"
+                "--step, --max-error, --max-angle, --max-value-error, --exact, --per-point, --verify, --shards and "
+                f"--small are for {COMPRESSED} files; {target} is of another format"
             )
         result = rewrite(source, target, double=double)
     if json:

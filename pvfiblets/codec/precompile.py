@@ -63,4 +63,12 @@ def _decoding() -> None:
         fiblets.decompress(dtype=kind)
 
 
-PARTS = {"directions": _directions, "lattices": _lattices, "decoding": _decoding}
+def _packing() -> None:
+    from .files.packed import pack, unpack
+
+    made = pack(np.zeros(4096, np.uint8))
+    assert made is not None
+    unpack("", "", *made)
+
+
+PARTS = {"directions": _directions, "lattices": _lattices, "decoding": _decoding, "packing": _packing}

@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pvfiblets.codec.files.archive import array_member, write_archive
-from pvfiblets.codec.files.fiblets_file import make_header
+from pvfiblets.codec.files.archive import array_member, open_archive, write_archive
+from pvfiblets.codec.files.fiblets_file import make_header, write
 from pvfiblets.codec.point_values import PointValues, as_codes
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
+
+SMALL_FROM = 1_000_000
+"""Bytes of a set that a page holds packed; below, the page's script is as large."""
 
 _MEMBERS = ("pages", "rank_to_id", "anchors", "anchors_low", "decoding", "codes", "reach", "ends")
 """In this order, after values of points: a page that gets the file from its start has all that the first codes need.
@@ -39,6 +42,16 @@ def fiblet_bytes(fiblets: FibletSet, keep: tuple[str, ...] = ()) -> bytes:
         path = Path(folder) / "page.fiblets"
         write_archive(path, header, more | members)
         return path.read_bytes()
+
+
+def small_bytes(file: bytes) -> bytes:
+    """Return a file as a small one (:mod:`pvfiblets.codec.files.packed`), as a page with its data in it has it."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "page.fiblets"
+        path.write_bytes(file)
+        header, arrays = open_archive(path)
+        write(path.with_suffix(".small"), header, {k: array_member(v) for k, v in arrays.items()}, small=True)
+        return path.with_suffix(".small").read_bytes()
 
 
 def _coded(values: PointValues) -> PointValues:

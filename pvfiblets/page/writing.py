@@ -19,6 +19,7 @@ from typing import Any
 
 from pvfiblets.support.whole_files import made_folder, replacing
 
+from .fiblet_bytes import SMALL_FROM, small_bytes
 from .scene import PageScene
 
 LARGEST_FILE = 64_000_000
@@ -37,11 +38,11 @@ def write_page(scene: PageScene, path: str | PathLike[str], *, largest_file: int
     apart = path.suffix == "" or sum(map(len, scene.blobs)) > largest_file
     page = path if path.suffix else path / "index.html"
     written = [page]
+    sets = {layer["data"] for layer in scene.layers if layer["kind"] == "fiblets"}
     if apart:
         folder = path if not path.suffix else path.with_name(f"{path.stem}_data")
         made_folder(folder)
         content["data"] = []
-        sets = {layer["data"] for layer in scene.layers if layer["kind"] == "fiblets"}
         for number, blob in enumerate(scene.blobs):
             name = folder / f"{number}.{'fiblets' if number in sets else 'bin'}"
             with replacing(name, len(blob)) as file:
@@ -50,8 +51,9 @@ def write_page(scene: PageScene, path: str | PathLike[str], *, largest_file: int
             content["data"].append({"bytes": len(blob), "file": name.relative_to(page.parent).as_posix()})
         blocks: list[bytes] = []
     else:
-        content["data"] = [{"bytes": len(blob)} for blob in scene.blobs]
-        blocks = [_data_block(f"data-{number}", blob) for number, blob in enumerate(scene.blobs)]
+        blobs = [small_bytes(b) if i in sets and len(b) >= SMALL_FROM else b for i, b in enumerate(scene.blobs)]
+        content["data"] = [{"bytes": len(blob)} for blob in blobs]
+        blocks = [_data_block(f"data-{number}", blob) for number, blob in enumerate(blobs)]
     text = _page_text(content, apart=apart)
     head, tail = text.split("<!-- data -->")
     with replacing(page, len(text) + sum(map(len, blocks))) as file:

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import pvfiblets as pf
+from pvfiblets.codec.encoding.compress import split_chunks
 from pvfiblets.codec.layout import DIRECTION, MAX_POINTS, unpack
 from pvfiblets.report.studies.decode.reference import decode_direction, decode_lattice
 from pvfiblets.streamlines import Streamlines
@@ -237,7 +238,7 @@ def test_many_pages(monkeypatch):
     points = np.cumsum(rng.normal(size=(n, 2, 3)), axis=1) + rng.uniform(-50, 50, (n, 1, 3))
     lines = Streamlines(points.reshape(-1, 3), np.arange(0, 2 * n + 1, 2))
     whole = pf.compress(lines)
-    monkeypatch.setattr(pf.codec.compress.split_chunks, "__defaults__", (12_345,))
+    monkeypatch.setattr(split_chunks, "__defaults__", (12_345,))
     pieces = pf.compress(lines)
     assert whole.pages.shape == (4, 3)
     for name in ("anchors", "decoding", "reach", "codes", "ends", "pages"):

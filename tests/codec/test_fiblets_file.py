@@ -322,7 +322,7 @@ def test_an_older_version_is_refused(tmp_path):
     del header["parameters"]["end_scale"], header["parameters"]["largest_radius"]
     members = {k: archive.array_member(np.array(v)) for k, v in arrays.items() if k != "ends.npy"}
     archive.write_archive(tmp_path / "b.fiblets", header, members)
-    with pytest.raises(FormatError, match="by an older pvfiblets, expected version 2 or 3: compress the original"):
+    with pytest.raises(FormatError, match="by an older pvfiblets, expected versions 2 to 4: compress the original"):
         pf.FibletSet.open(tmp_path / "b.fiblets")
 
 

@@ -84,6 +84,19 @@ def test_the_printed_reader_reads_exact_points(reader, form, tmp_path):
         np.testing.assert_array_equal(line, wanted)
 
 
+@pytest.mark.parametrize("exact", [False, True])
+def test_the_printed_reader_reads_small_files(reader, exact, tmp_path):
+    lines = brain_streamlines(40, seed=3)
+    lines.per_point["x"] = lines.points[:, 0].copy()
+    fiblets = compress(lines, exact=exact, per_point=("x",))
+    fiblets.save(tmp_path / "plain.fiblets")
+    fiblets.save(tmp_path / "small.fiblets", small=True)
+    header = json.loads(zipfile.ZipFile(tmp_path / "small.fiblets").read("header.json"))
+    assert ("codes.npy" in header["packed"]) != exact
+    for plain, small in zip(reader(tmp_path / "plain.fiblets"), reader(tmp_path / "small.fiblets"), strict=True):
+        np.testing.assert_array_equal(plain, small)
+
+
 def test_all_kinds_of_records_are_read():
     kinds = set()
     for make in SETS.values():

@@ -40,7 +40,7 @@ SURFACES = ["s.pial", "s.annot", "s.thickness"]
 LABELS = ["v.ctab", "v.label", "v.tsv", "v.label.gii"]
 # Reader, file, and of how many damaged copies more than one is refused: in tables of labels much may be anything.
 DAMAGED = [
-    *(("lines", variant, 20) for variant in VARIANTS), ("fiblets", ".fiblets", 20),
+    *(("lines", variant, 20) for variant in VARIANTS), ("fiblets", ".fiblets", 20), ("fiblets", "small.fiblets", 20),
     *(("values", variant, 20) for variant in VALUES), *(("volume", variant, 50) for variant in VOLUMES),
     *(("image", variant, 20) for variant in IMAGES), *(("labels", variant, None) for variant in LABELS),
     *(("surface", variant, 20) for variant in SURFACES),
@@ -54,6 +54,9 @@ def healthy(tmp_path_factory):
     files |= surface_corpus(folder)
     files[".fiblets"] = folder / "rich.fiblets"
     compress(rich(counts=(80, 1, 125, 0, 2, 7)), per_point=("fa",)).save(files[".fiblets"])
+    files["small.fiblets"] = folder / "small.fiblets"
+    longer = compress(rich(counts=(800, 1, 1250, 0, 2, 7)), per_point=("fa",), exact=False)
+    longer.save(files["small.fiblets"], small=True)
     return files
 
 

@@ -6,6 +6,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPlane
 
 import pvfiblets
+from pvfiblets.page import writing
 from pvfiblets.page.scene import PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
 from pvfiblets.plotting.page.page_scene import add_all, page_of
@@ -67,6 +68,18 @@ def test_page_shows_what_the_engine_shows(case, plotter, fiblets, visit, tmp_pat
     wrong, drawn = differing(visit(tmp_path / "figure.html").picture(), expected)
     assert drawn > 0.2
     assert wrong < 0.01
+
+
+def test_packed_data_draw_the_same_page_in_fewer_bytes(plotter, fiblets, visit, tmp_path, monkeypatch):
+    plotter.add_fiblets(fiblets, scalars="share", show_scalar_bar=False)
+    plotter.camera_position = "xz"
+    plotter.fiblets.export_page(tmp_path / "plain.html")
+    monkeypatch.setattr(writing, "SMALL_FROM", 0)
+    plotter.fiblets.export_page(tmp_path / "small.html")
+    sizes = [(tmp_path / f"{name}.html").stat().st_size for name in ("plain", "small")]
+    assert sizes[0] - sizes[1] > fiblets.nbytes / 5
+    plain, small = (visit(tmp_path / f"{name}.html").picture() for name in ("plain", "small"))
+    np.testing.assert_array_equal(plain, small)
 
 
 def test_lines_of_a_page_keep_their_colours_in_dim_and_coloured_light(plotter, fiblets, visit, tmp_path):

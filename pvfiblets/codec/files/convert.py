@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -40,8 +41,8 @@ from ..layout import WORDS
 from ..parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of, tell_far
 from ..point_values import PointValues, ValueCoder, value_columns, value_errors
 from ..progress import Progress, shown
-from .archive import Member, write_archive
-from .fiblets_file import CORE, OPTIONAL, index_members, make_header
+from .archive import Member
+from .fiblets_file import CORE, OPTIONAL, index_members, make_header, write
 from .file_error import compare_file
 
 if TYPE_CHECKING:
@@ -64,6 +65,7 @@ def compress_file(
     max_value_error: float | Mapping[str, float] | None = None,
     exact: bool | None = None,
     verify: Literal["all", "sample"] = "all",
+    small: bool = False,
     prepare: Callable[[FibletSet], object] | None = None,
     progress: Progress = False,
 ) -> dict[str, Any]:
@@ -88,6 +90,9 @@ def compress_file(
     verify : {'all', 'sample'}
         Compare all of the finished file with the source, or every so many-th streamline, about a million points in all.
         Coding itself keeps the error bound, in either case.
+    small : bool
+        As in :meth:`pvfiblets.FibletSet.save`. The compressed set is held in memory for it. A compressed source is
+        packed as it is.
     prepare : callable, optional
         Called with the coded set before it is written, unless it keeps every bit: data added to the set, as by
         :func:`pvfiblets.regions.index_of`, are written to the file.
@@ -111,6 +116,12 @@ def compress_file(
         As :func:`pvfiblets.compress`.
     """
     started = time.perf_counter()
+    if small and Path(source).suffix.lower() == ".fiblets":
+        own: dict[str, Any] = {
+            "step": step, "max_error": max_error, "max_angle": max_angle, "effort": effort, "per_point": per_point,
+            "per_point_bits": per_point_bits, "max_value_error": max_value_error, "exact": exact, "verify": verify,
+        }  # fmt: skip
+        return _repack(compressed_source(source, own), target, prepare)
     check_order(order)
     if order != "input":
         raise ValueError(
@@ -140,7 +151,7 @@ def compress_file(
     found, names, raw = first.found, first.names, first.raw
     plain = is_plain(step, max_error, max_angle, effort, order)
     if exact or (exact is None and plain and raw < limits.EXACT_BELOW):
-        return _keep_exactly(first.small, target, names, started)
+        return _keep_exactly(first.small, target, names, started, small)
     first.small.clear()
     from ..encoding.encode import Encoder  # which needs a compiler
 
@@ -162,7 +173,7 @@ def compress_file(
         spool.close()
         # To keep them as they are, all are in memory at once, and their records.
         if exact is None and step == "auto" and grows(encoder, raw) and fits(6 * raw):
-            return _keep_exactly(chunks(), target, names, started)
+            return _keep_exactly(chunks(), target, names, started, small)
         tell_far(found)
         if not encoder.n_fiblets:
             spool.add_empty(coders, whole)
@@ -180,7 +191,7 @@ def compress_file(
             mapped = spool.mapped(header_set)
             prepare(mapped)
             members |= index_members(mapped)
-        write_archive(target, header, members | more)
+        write(target, header, members | more, small=small)
     seconds = time.perf_counter() - started
     originals = chunks() if promise is None else formats.iter_chunks(source, CHUNK_POINTS)
     every = 1 if verify == "all" else max(1, round(found.n_points / SAMPLE_POINTS))
@@ -201,6 +212,39 @@ def compress_file(
         "dropped": whole.dropped,
         "per_point": list(whole.per_point),
         "exact": False,
+    }
+
+
+def compressed_source(source: str | PathLike[str], options: Mapping[str, Any]) -> FibletSet:
+    """Open a compressed source, whose fiblets stay as they are; refuse options of compression."""
+    usual = inspect.signature(compress_file).parameters
+    given = sorted(name for name, value in options.items() if name not in usual or value != usual[name].default)
+    if given:
+        raise ValueError(
+            f"{', '.join(given)}: {source} is compressed already, and its fiblets stay as they are; give the original, "
+            "or leave these out"
+        )
+    return FibletSet.open(source)
+
+
+def _repack(
+    fiblets: FibletSet, target: str | PathLike[str], prepare: Callable[[FibletSet], object] | None
+) -> dict[str, Any]:
+    if prepare is not None and fiblets.exact is None:
+        prepare(fiblets)
+    with naming_target(target):
+        fiblets.save(target, small=True)
+    size = Path(target).stat().st_size
+    return {
+        "streamlines": len(fiblets),
+        "points": fiblets.n_points,
+        "fiblets": fiblets.n_fiblets,
+        "bytes": size,
+        "bytes_per_point": size / max(fiblets.n_points, 1),
+        "promise_mm": fiblets.points_promise,
+        "dropped": dict(fiblets.dropped),
+        "per_point": list(fiblets.per_point),
+        "exact": fiblets.exact is not None,
     }
 
 
@@ -250,13 +294,13 @@ def _code(
 
 
 def _keep_exactly(
-    chunks: Iterable[Streamlines], target: str | PathLike[str], names: tuple[str, ...], started: float
+    chunks: Iterable[Streamlines], target: str | PathLike[str], names: tuple[str, ...], started: float, small: bool
 ) -> dict[str, Any]:
     """Write a file that keeps every bit of the points, and say what :func:`compress_file` says."""
     whole = Streamlines.concatenate(chunks)
     fiblets = compress(whole, exact=True, per_point=names)
     with naming_target(target):
-        fiblets.save(target)
+        fiblets.save(target, small=small)
     seconds = time.perf_counter() - started
     back = FibletSet.open(target)
     if not (np.array_equal(back.decompress().points, whole.points) and np.array_equal(back.offsets(), whole.offsets)):

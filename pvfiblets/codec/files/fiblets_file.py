@@ -6,7 +6,7 @@ names the members of arrays whose names are free text. Opening maps the arrays: 
 file's size.
 
 The file of an exact set (`exact`) has its points in the place of all of these (:mod:`.exact_file`). They are
-read, and records made of them, when it is opened.
+read, and records made of them, when it is opened. Small files (:mod:`.packed`) are unpacked when they are opened.
 """
 
 from __future__ import annotations
@@ -28,13 +28,17 @@ from ..parameters import Parameters, bounds_of, survey
 from ..point_values import PointValues, linear_table, opened_table, stored_table
 from .archive import Member, array_member, open_archive, write_archive
 from .exact_file import pack_points, unpack_points
+from .packed import pack_members, unpack
 
 if TYPE_CHECKING:
     from ..fibletset import FibletSet
 
-VERSION = 3
 OF_CODES = 2
-"""Version of files that hold records and codes, which older programs read too; that of exact sets is `VERSION`."""
+"""Version of files that hold records and codes, which older programs read too."""
+
+OF_POINTS = 3
+VERSION = 4
+"""Version of files with packed members; that of other exact sets is `OF_POINTS`."""
 
 INDEX = "_spatial_index"  # attribute of a set, no field of it: a set that is made of another has other fiblets
 INDEX_MEMBERS = ("spatial_index/order.npy", "spatial_index/leaves.npy", "spatial_index/pieces.npy")
@@ -50,17 +54,25 @@ _SHAPES: dict[str, tuple[str, int]] = {
 }
 
 
-def save(fiblets: FibletSet, path: str | PathLike[str]) -> None:
-    """Write a set to disk."""
+def save(fiblets: FibletSet, path: str | PathLike[str], *, small: bool = False) -> None:
+    """Write a set to disk; packed where it is to be small."""
     if fiblets.exact is not None:
-        _save_exact(fiblets, path)
+        _save_exact(fiblets, path, small)
         return
     members = {f"{name}.npy": array_member(np.asarray(getattr(fiblets, name))) for name in CORE}
     for name in OPTIONAL:
         if getattr(fiblets, name) is not None:
             members[f"{name}.npy"] = array_member(np.asarray(getattr(fiblets, name)))
     header, more = make_header(fiblets, {k: array_member(np.asarray(v.codes)) for k, v in fiblets.per_point.items()})
-    write_archive(path, header, members | more | index_members(fiblets))
+    write(path, header, members | more | index_members(fiblets), small=small)
+
+
+def write(path: str | PathLike[str], header: dict[str, Any], members: dict[str, Member], *, small: bool) -> None:
+    """Write an archive, with packed members where it is to be small."""
+    if small:
+        facts, members = pack_members(members)
+        header = header | {"version": VERSION, "packed": facts} if facts else header
+    write_archive(path, header, members, small="exact" in header and len(members) == 1)
 
 
 def index_members(fiblets: FibletSet) -> dict[str, Member]:
@@ -80,7 +92,7 @@ def index_bytes(fiblets: FibletSet) -> int:
     return sum(int(np.asarray(array).nbytes) for array in _index_arrays(fiblets))
 
 
-def _save_exact(fiblets: FibletSet, path: str | PathLike[str]) -> None:
+def _save_exact(fiblets: FibletSet, path: str | PathLike[str], small: bool) -> None:
     """Points and their values stand in the file in the order of the streamlines."""
     points, per_point = np.asarray(fiblets.exact), {k: v.codes for k, v in fiblets.per_point.items()}
     if not fiblets.in_order:
@@ -92,8 +104,8 @@ def _save_exact(fiblets: FibletSet, path: str | PathLike[str]) -> None:
     for name in ("parameters", "bounds", "n_fiblets", *(k for k, v in header.items() if v in ({}, []))):
         del header[name]
     facts, packed = pack_points(points, np.diff(fiblets.offsets()))
-    header |= {"version": VERSION, "exact": {"member": "exact.npy", **facts}}
-    write_archive(path, header, {"exact.npy": array_member(packed)} | members, small=not members)
+    header |= {"version": OF_POINTS, "exact": {"member": "exact.npy", **facts}}
+    write(path, header, {"exact.npy": array_member(packed)} | members, small=small)
 
 
 def make_header(fiblets: FibletSet, per_point: dict[str, Member]) -> tuple[dict[str, Any], dict[str, Member]]:
@@ -162,10 +174,12 @@ def open_fiblets(path: str | PathLike[str], kind: type[FibletSet]) -> FibletSet:
             path,
             0,
             f"version {version} in header.json, written by an older pvfiblets",
-            f"version {OF_CODES} or {VERSION}: compress the original again",
+            f"versions {OF_CODES} to {VERSION}: compress the original again",
         )
-    exact = version == VERSION
+    exact = version >= OF_POINTS and "exact" in header
     try:
+        for member, facts in header.get("packed", {}).items() if version == VERSION else ():
+            arrays[member] = unpack(path, member, facts, arrays[member])
         fiblets = _assemble_exact(path, kind, header, arrays) if exact else _assemble(kind, header, arrays)
     except FormatError:
         raise

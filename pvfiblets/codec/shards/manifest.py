@@ -55,6 +55,12 @@ class Shard:
     n_fiblets: int
     bounds: Bounds  # of its points `(xmin, xmax, ymin, ymax, zmin, zmax)`, mm
     length_mm: dict[str, float] = field(default_factory=dict)  # `mean, max` over its streamlines
+    unpacked: int = 0  # bytes in memory of a small file; 0 of files that are mapped
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the shard in memory."""
+        return self.unpacked or self.fiblets.bytes
 
 
 @dataclass(frozen=True)
@@ -148,6 +154,7 @@ def _shard(given: Mapping[str, Any]) -> Shard:
         n_fiblets=int(given["n_fiblets"]),
         bounds=_bounds(given["bounds"]),
         length_mm={str(k): float(v) for k, v in given["length_mm"].items()},
+        unpacked=max(int(given.get("unpacked", 0)), 0),
     )
 
 

@@ -86,8 +86,8 @@ class UnreadSet(FibletSet):
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Bytes of the shards' files."""
-        return {f"shard/{n:06}": self.shards.shards[n].fiblets.bytes for n in self.numbers}
+        """Bytes of the shards in memory."""
+        return {f"shard/{n:06}": self.shards.shards[n].nbytes for n in self.numbers}
 
     @property
     def n_ranks(self) -> int:
@@ -276,9 +276,9 @@ class UnreadSet(FibletSet):
             per_streamline=self.per_streamline, groups=self.groups, per_group=self.per_group, dropped=self.dropped,
         )  # fmt: skip
 
-    def save(self, path: str | PathLike[str], *, shards: int | None = None) -> list[str]:
+    def save(self, path: str | PathLike[str], *, shards: int | None = None, small: bool = False) -> list[str]:
         """Write a file, or shards; see :meth:`.FibletSet.save`. All shards are put together for it."""
-        return self.gathered.save(path, shards=shards)
+        return self.gathered.save(path, shards=shards, small=small)
 
 
 def _ranks_of(part: FibletSet, ids: Ints) -> Ints:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import inspect
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -38,26 +37,20 @@ def compress_file_in_shards(
     target: str | PathLike[str],
     size: int,
     *,
+    small: bool = False,
     progress: Progress = False,
     **options: Any,
 ) -> dict[str, Any]:
     """Compress a tractogram file into a folder of shards."""
     from ..fibletset import FibletSet
-    from ..files.convert import compress_file
+    from ..files.convert import compress_file, compressed_source
 
     target = Path(target).expanduser()
     _refuse(target, size)
     remove_unfinished(target.resolve().parent)
     if Path(source).suffix.lower() == ".fiblets":
-        usual = inspect.signature(compress_file).parameters
-        given = sorted(name for name, value in options.items() if name not in usual or value != usual[name].default)
-        if given:
-            raise ValueError(
-                f"{', '.join(given)}: {source} is compressed already, and its shards are parts of it as it is; give "
-                "the original, or leave these out"
-            )
-        whole = FibletSet.open(source)
-        manifest = write_shards(whole, target, size, progress=progress)
+        whole = compressed_source(source, options)
+        manifest = write_shards(whole, target, size, small=small, progress=progress)
         result: dict[str, Any] = {"exact": whole.exact is not None, "per_point": list(whole.per_point)}
         result |= {"promise_mm": whole.points_promise, "dropped": dict(whole.dropped)}
     else:
@@ -67,7 +60,7 @@ def compress_file_in_shards(
         ):
             aside = made / "whole.fiblets"
             result = compress_file(source, aside, progress=progress, **options)
-            manifest = write_shards(FibletSet.open(aside), target, size, progress=progress)
+            manifest = write_shards(FibletSet.open(aside), target, size, small=small, progress=progress)
     total = sum(file.stat().st_size for file in target.iterdir())
     return {
         **result,
@@ -80,7 +73,9 @@ def compress_file_in_shards(
     }
 
 
-def write_shards(fiblets: FibletSet, target: str | PathLike[str], size: int, *, progress: Progress = False) -> Manifest:
+def write_shards(
+    fiblets: FibletSet, target: str | PathLike[str], size: int, *, small: bool = False, progress: Progress = False
+) -> Manifest:
     """Write a set as a folder of shards; every point decodes to the same bits."""
     target = Path(target).expanduser()
     _refuse(target, size)
@@ -91,12 +86,12 @@ def write_shards(fiblets: FibletSet, target: str | PathLike[str], size: int, *, 
             part = extract(fiblets, ids)
             if number:  # said once, as sums are taken of what all shards say
                 part = replace(part, dropped={})
-            shards.append(_saved(part, ids, folder / f"{number:06}.fiblets"))
+            shards.append(_saved(part, ids, folder / f"{number:06}.fiblets", small))
         thinned = None
         if len(shards) > 1:
             share = min(THINNED, size / max(fiblets.nbytes, 1))
             ids = np.sort(even_share(fiblets, share))
-            thinned = _saved(replace(extract(fiblets, ids), dropped={}), ids, folder / "thinned.level")
+            thinned = _saved(replace(extract(fiblets, ids), dropped={}), ids, folder / "thinned.level", small)
         manifest = Manifest(
             streamlines=fiblets.n_streamlines,
             points=fiblets.n_points,
@@ -112,9 +107,9 @@ def write_shards(fiblets: FibletSet, target: str | PathLike[str], size: int, *, 
     return manifest
 
 
-def _saved(part: FibletSet, ids: Ints, path: Path) -> Shard:
+def _saved(part: FibletSet, ids: Ints, path: Path, small: bool) -> Shard:
     made = path.with_suffix(".fiblets")
-    part.save(made)
+    part.save(made, small=small)
     made.rename(path)
     numbers = path.with_suffix(".ids.npy")
     np.save(numbers, ids)
@@ -130,6 +125,7 @@ def _saved(part: FibletSet, ids: Ints, path: Path) -> Shard:
             "mean": float(lengths.mean()) if len(lengths) else 0.0,
             "max": float(lengths.max(initial=0.0)),
         },
+        unpacked=part.nbytes if small else 0,
     )
 
 

@@ -266,7 +266,7 @@ def test_commands(whole, tmp_path, capsys):
     assert main(["convert", target, target, "--shards", "9K"]) == 1
     assert "overwritten by itself" in capsys.readouterr().err
     assert main(["convert", source, str(tmp_path / "c.trk"), "--shards", "9K"]) == 1
-    assert "--shards are for .fiblets files" in capsys.readouterr().err
+    assert "--shards and --small are for .fiblets files" in capsys.readouterr().err
     assert main(["convert", source, "-", "--format", "fiblets", "--shards", "9K"]) == 1
     assert "give the folder's name" in capsys.readouterr().err
     with pytest.raises(SystemExit):

@@ -100,11 +100,11 @@ class ShardParts:
 
 
 GPU_SHARE = 1.3
-"""Bytes on the GPU for each of a file, at most: records and codes as they are, tables of pages, marks, and values."""
+"""Bytes on the GPU for each in memory, at most: records and codes as they are, tables of pages, marks, and values."""
 
 
 def _gpu_bytes(fiblets: UnreadSet, number: int) -> int:
-    return int(GPU_SHARE * fiblets.shards.shards[number].fiblets.bytes)
+    return int(GPU_SHARE * fiblets.shards.shards[number].nbytes)
 
 
 def gpu_bytes_of_shards(fiblets: UnreadSet) -> int:
