@@ -50,6 +50,12 @@ def shards(folder: Path) -> Image.Image:
     return Image.open(folder / "shards.png")
 
 
+def tutorial(folder: Path) -> Image.Image:
+    """The figure of the tutorial, at half its size."""
+    run("docs/tutorial.md", folder)
+    return Image.open(folder / "figure.png").reduce(2)
+
+
 def page(folder: Path) -> Image.Image:
     """An exported page in the browser."""
     run("docs/pages.md", folder)
@@ -108,7 +114,7 @@ def volume_filters(_folder: Path) -> Image.Image:
     return drawn
 
 
-PICTURES = {one.__name__: one for one in (shards, page, scene, cohort, volume_filters)}
+PICTURES = {one.__name__: one for one in (tutorial, shards, page, scene, cohort, volume_filters)}
 
 
 def main() -> None:

@@ -36,5 +36,5 @@ image = fiblets.density(like=counts, contrast="fa").to_image().slice("y", origin
 plotter.add_mesh(image, lighting=False, scalar_bar_args={**bar, "title": "mean of FA"})
 plotter.link_views()
 plotter.view_xz()
-plotter.camera.zoom(1.3)
+plotter.camera.zoom(1.1)
 plotter.screenshot(folder / "density.png")
