@@ -236,7 +236,7 @@ def clip(studio: Studio) -> Visit:
     here.press("4")
     here.page.click("[data-cut=slab]")
     here.wait(lambda: len(here.state("clips")) == 1, "the slab")
-    here.page.click("[data-clip] button:has-text('Y')")
+    here.page.click("[data-clip] [data-axis=y]")
     here.wait(lambda: here.state("clips")[0]["axis"] == "y", "the slab's new direction")
     here.page.click("[data-cut=sphere]")
     here.wait(lambda: len(here.state("clips")) == 2, "the sphere")

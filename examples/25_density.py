@@ -1,5 +1,4 @@
-"""
-Density
+"""Density
 =======
 
 Streamlines added up in voxels: as light, as mean directions, and as the mean FA. A NIfTI file keeps the counts.
