@@ -239,7 +239,7 @@ class _FirstPoints:
 
 
 def measure_error(streamlines: Streamlines, fiblets: FibletSet) -> CodingError:
-    """Compare streamlines with their compressed form, point by point.
+    """Measure the coding error of each point, by comparing streamlines with their compressed form.
 
     Parameters
     ----------
@@ -259,7 +259,7 @@ def measure_error(streamlines: Streamlines, fiblets: FibletSet) -> CodingError:
     Raises
     ------
     TypeError
-        If they are something else, such as the two in the other order.
+        If the arguments have other types, for instance in reverse order.
     ValueError
         If the two do not have the same streamlines and points.
     """

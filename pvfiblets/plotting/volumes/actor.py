@@ -267,7 +267,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
         return self._mapper.pick_at(x, y)
 
     def explain(self) -> dict[str, Any]:
-        """Return the active features of this actor and their cost, over all windows that show it.
+        """Return the active features of this actor and their cost, in all its windows.
 
         Returns
         -------

@@ -224,7 +224,7 @@ def connectome(
     ends: npt.ArrayLike | None = None,
     progress: Progress = False,
 ) -> Connectome:
-    """Put a number to every pair of parcels.
+    """Compute a connectivity matrix: one number for each pair of parcels.
 
     Parameters
     ----------
