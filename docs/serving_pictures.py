@@ -427,8 +427,6 @@ def volume(studio: Studio) -> Visit:
     here = studio.visit("brain.fiblets", "--volume", str(studio.root / "t1.nii.gz"))
     here.wait(lambda: here.layers() == 2, "the volume")
     here.press("4")
-    here.page.fill("[data-property=surface_opacity] input.pv-num", "1")
-    here.press("Tab")
     colour = here.page.locator("[data-property=color] input[type=color]")
     colour.fill("#d8c0b0")
     colour.dispatch_event("change")
