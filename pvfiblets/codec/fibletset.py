@@ -316,7 +316,7 @@ class FibletSet:
         Raises
         ------
         ValueError
-            If there is none, or one has data that another lacks.
+            If ``sets`` is empty, or one set has data that another lacks.
         """
         from .join import concatenate
 

@@ -92,7 +92,7 @@ class FilteredActor(ClippedActor):
         KeyError
             If the values do not exist; the message lists the existing ones.
         ValueError
-            If the range is none, or an array has the wrong length.
+            If the range is invalid, or an array has the wrong length.
         """
         low, high = checked_range(range)
         known = self._choices.criteria

@@ -74,7 +74,7 @@ class NodeValues:
 class SplineTubes:
     """Hermite spline tubes: nodes, segments, and the tube of each segment.
 
-    Arrays are taken over as they are where their type allows, and must not be changed afterwards.
+    Arrays are not copied if their type fits; do not change them afterwards.
 
     Parameters
     ----------

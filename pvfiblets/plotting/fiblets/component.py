@@ -485,7 +485,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         -------
         widget : pyvista.plotting.affine_widget.AffineWidget3D
         actor : pyvista.Actor
-            Of the mesh; its ``user_matrix`` says where it is.
+            Draws the mesh; its ``user_matrix`` places it.
 
         Raises
         ------

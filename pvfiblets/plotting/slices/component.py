@@ -210,7 +210,7 @@ class SlicesComponent:
         Raises
         ------
         ValueError
-            If the plotter has fewer than four views, or as of ``plotter.add_slices``.
+            If the plotter has fewer than four views, or as for ``plotter.add_slices``.
 
         Examples
         --------

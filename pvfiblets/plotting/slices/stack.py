@@ -124,7 +124,7 @@ class SliceStack:
         Raises
         ------
         ValueError
-            If there are eight layers already, or as of ``plotter.add_slices``.
+            If there are eight layers already, or as for ``plotter.add_slices``.
         """
         unknown = next((one for one in settings if one not in SliceSettings.DECLARED), None)
         if unknown is not None:
@@ -447,7 +447,7 @@ class SliceStack:
         self._watchers.append(changed)
 
     def changed(self) -> None:
-        """Make all slices anew."""
+        """Render all slices again."""
         for plane in self._planes.values():
             plane.update()
         for call in self._watchers:

@@ -422,7 +422,7 @@ class Workspace:
         return picked_on_planes(self._renderers["3d"], self.slices, x, y)
 
     def pane_at(self, x: float, y: float) -> Pane | None:
-        """Return the pane of a pixel of the window; None if it is none's."""
+        """Return the pane at a window pixel; None outside all panes."""
         for name, pane in self.panes.items():
             if name not in self._places:
                 continue

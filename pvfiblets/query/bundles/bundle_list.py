@@ -166,7 +166,7 @@ class Bundles:
         Raises
         ------
         ValueError
-            If the name is taken or empty, or the colour is none.
+            If the name is taken or empty, or the colour is invalid.
         IndexError
             If a streamline is out of range.
         """

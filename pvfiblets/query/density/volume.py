@@ -91,7 +91,7 @@ def density(
     KeyError
         If there is no array of that name.
     TypeError
-        If `source` or `like` is something else.
+        If `source` or `like` has another type.
     ValueError
         If neither or both of `voxel_size` and `like` are given, a number makes no sense, an array does not fit, a point
         is not finite, or the grid takes more memory than there is.

@@ -55,7 +55,7 @@ def sample(
     FormatError
         If a file is damaged.
     TypeError
-        If the image is none.
+        If ``image`` is not an image.
     ValueError
         If the image has other than one number per voxel, or there is no such statistic.
 
