@@ -38,7 +38,10 @@ exclude_patterns = ["_build", "gallery/*.ipynb", "gallery/*.py", "gallery/*.py.m
 default_role = "py:obj"
 toc_object_entries_show_parents = "hide"
 autodoc_member_order = "bysource"
-autodoc_default_options = {"exclude-members": "COMMON"}  # of components, for their actors
+# What mappers, components and windows call, and users do not.
+INTERNAL = """COMMON, SetProperty, arrange, changed, enter, entered, follow, leave, picking_layers, postpone, put,
+raise_pending, removed_by, sampled_once, show_glyphs_on, show_glyphs_on_plane, take, take_table, watch"""
+autodoc_default_options = {"exclude-members": INTERNAL}
 autodoc_typehints = "none"  # numpydoc's sections say them in words
 numpydoc_show_class_members = False
 

@@ -84,9 +84,9 @@ LIGHTS: dict[str, Callable[[Array], Array]] = {
     "no light": lambda tangents: np.ones(tangents.shape[:-1]),
     "the normal that faces the viewer": kit(facing),
     "mean of a cylinder (Mallo et al. 2005)": kit(cylinder),
-    "illuminated lines (Zöckler et al. 1996), of all lights": lambda t: kit(along)(t) / sum(s for _, s in KIT),
+    "illuminated lines (Zöckler et al. 1996)": lambda t: kit(along)(t) / sum(s for _, s in KIT),
     "with a floor, from the viewer": floored(VIEWER),
-    "with a floor, over the viewer's shoulder: the default": floored(SHOULDER),
+    "with a floor, over the shoulder: the default": floored(SHOULDER),
 }
 
 
@@ -145,7 +145,7 @@ def main() -> None:
     for axis, (name, picture) in zip(axes.flat, panels().items(), strict=True):
         axis.imshow(picture, interpolation="nearest")
         axis.set_axis_off()
-        axis.set_title(name, color="white", fontsize=9, pad=4)
+        axis.set_title(name, color="white", fontsize=12, pad=4)
     whole = io.BytesIO()
     figure.savefig(whole, format="png", facecolor="black")
     for quality in range(88, 30, -4):

@@ -1,7 +1,7 @@
-"""Makes the pictures of how-to pages from the pages' own programs: ``python docs/page_pictures.py [PICTURE…]``.
+"""Makes pictures of how-to pages: ``python docs/page_pictures.py [PICTURE…]``.
 
-A larger brain takes the place of the tests' small one. The scene of docs/howto.md is of real data, in the folder that
-``PVFIBLETS_DATA`` names, or in ``../shared/data``.
+Most come from the pages' own programs, with a larger brain in place of the tests' small one. The scene of docs/howto.md
+is of real data, in the folder that ``PVFIBLETS_DATA`` names, or in ``../shared/data``.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+import pyvista as pv
 from PIL import Image, ImageChops
 
 HERE = Path(__file__).resolve().parent
@@ -25,6 +26,7 @@ from pages import blocks, program  # noqa: E402 - the programs that the tests ru
 
 import pvfiblets  # noqa: E402
 from pvfiblets.synthetic import brain_streamlines  # noqa: E402
+from pvfiblets.synthetic.vessels import vessel_lines, vessel_tree  # noqa: E402
 from tests.page.conftest import WEBGL  # noqa: E402 - the tests' way to open a page
 from tests.page.pages import Page  # noqa: E402
 from tests.web.browsing import FLAGS, launched  # noqa: E402
@@ -46,6 +48,12 @@ def shards(folder: Path) -> Image.Image:
     """The shards of a set, each in a colour."""
     run("docs/shards.md", folder)
     return Image.open(folder / "shards.png")
+
+
+def tutorial(folder: Path) -> Image.Image:
+    """The figure of the tutorial, at half its size."""
+    run("docs/tutorial.md", folder)
+    return Image.open(folder / "figure.png").reduce(2)
 
 
 def page(folder: Path) -> Image.Image:
@@ -90,7 +98,23 @@ def cohort(folder: Path) -> Image.Image:
     return Image.open(folder / "along.png")
 
 
-PICTURES = {one.__name__: one for one in (shards, page, scene, cohort)}
+def volume_filters(_folder: Path) -> Image.Image:
+    """A surface of coarse vessels by four ways to find it."""
+    plotter = pv.Plotter(off_screen=True, window_size=(1400, 900), shape=(2, 2), border=False)
+    tree, way = vessel_tree(96), vessel_lines().get_cell(0).points
+    plotter.set_background("black", all_renderers=True)
+    for n, settings in enumerate(({"refine": "none", "step": 1.0}, {}, {"filter": "nearest"}, {"filter": "tricubic"})):
+        plotter.subplot(*divmod(n, 2))
+        plotter.add_raycast_volume(tree, mode="isosurface", values=90, color="#e8a08c", **settings)
+        plotter.camera_position = [way[9] + (26, -70, 20), way[9], (0, 0, 1)]
+        words = ", ".join(f"{name}={value!r}" for name, value in settings.items()) or "default: exact, trilinear"
+        plotter.add_text(words, position=(16, 12), font_size=14, color="white")
+    drawn = Image.fromarray(plotter.screenshot(None))
+    plotter.close()
+    return drawn
+
+
+PICTURES = {one.__name__: one for one in (tutorial, shards, page, scene, cohort, volume_filters)}
 
 
 def main() -> None:

@@ -1,5 +1,4 @@
-"""
-A first picture
+"""A first picture
 ===============
 
 A whole-brain-like tractogram in an ordinary PyVista scene.

@@ -1,5 +1,4 @@
-"""
-Compress and check
+"""Compress and check
 ==================
 
 Compress a tractogram, look at what that costs, store it and open it again.

@@ -1,5 +1,4 @@
-"""
-Colours
+"""Colours
 =======
 
 Four ways to colour the same streamlines.

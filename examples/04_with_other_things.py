@@ -1,5 +1,4 @@
-"""
-Among meshes
+"""Among meshes
 ============
 
 Streamlines among other things: a translucent surface around them, an opaque one within.

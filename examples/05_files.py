@@ -1,5 +1,4 @@
-"""
-Files
+"""Files
 =====
 
 Tractogram files with PyVista alone: read, save, convert.

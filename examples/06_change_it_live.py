@@ -1,5 +1,4 @@
-"""
-Change settings live
+"""Change settings live
 ====================
 
 An actor's properties change at any time, and the next render shows it.

@@ -1,5 +1,4 @@
-"""
-Pick a streamline
+"""Pick a streamline
 =================
 
 Ask which streamline a pixel shows, and draw that one thick.

@@ -1,5 +1,4 @@
-"""
-Large sets and culling
+"""Large sets and culling
 ======================
 
 Many lines: what this machine's OpenGL can draw with, what culling leaves out, and that it loses nothing.

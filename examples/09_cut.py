@@ -1,5 +1,4 @@
-"""
-Cut
+"""Cut
 ===
 
 Cut a tractogram: by a plane, a box without a ball, a mesh with a hole, and a slab with an image in it.

@@ -1,5 +1,4 @@
-"""
-Filter
+"""Filter
 ======
 
 Choose streamlines: by numbers, by regions they pass through or end in, by group, at random; and save the result.

@@ -1,5 +1,4 @@
-"""
-Select
+"""Select
 ======
 
 Pick the streamlines in an area of the image, grow the selection, draw it as tubes, and measure along it.

@@ -1,5 +1,4 @@
-"""
-Shading
+"""Shading
 =======
 
 Shade lines: by the scene's lights, as illuminated lines, with ambient occlusion, depth cueing, halos; as tubes.

@@ -1,5 +1,4 @@
-"""
-More colours
+"""More colours
 ============
 
 Colour by a volume sampled on the GPU, by a distance, by the coding error; and look through layers.

@@ -1,5 +1,4 @@
-"""
-Vessels
+"""Vessels
 =======
 
 A tree of vessels as spline tubes: coloured by radius, cut by a plane, and from inside.

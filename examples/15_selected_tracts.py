@@ -1,5 +1,4 @@
-"""
-Selected tracts
+"""Selected tracts
 ===============
 
 Selected streamlines as smooth tubes among compressed ones, and a few tubes with a radius and values of their own.

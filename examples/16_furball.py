@@ -1,5 +1,4 @@
-"""
-A furball
+"""A furball
 =========
 
 The paper's largest set made anew, 787,327 segments, and which one of them a pixel shows.

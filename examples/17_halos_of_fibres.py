@@ -1,5 +1,4 @@
-"""
-Halos of fibres
+"""Halos of fibres
 ===============
 
 Fibre tracts as ink on paper: bundles are dark strands, with gaps where one passes behind another.

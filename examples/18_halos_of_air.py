@@ -1,5 +1,4 @@
-"""
-Halos of air
+"""Halos of air
 ============
 
 Air currents in an office, as ink on paper; the second picture is for red-cyan glasses, red on the left eye.

@@ -1,5 +1,4 @@
-"""
-Halos of a scan
+"""Halos of a scan
 ===============
 
 A scanned surface as a cloud of points: gaps where one part of it passes in front of another, and no mesh at all.

@@ -1,5 +1,4 @@
-"""
-Halos of knots
+"""Halos of knots
 ==============
 
 Knots as in a book of mathematics, for a printer of black and white, and the three displacement functions.
@@ -35,6 +34,6 @@ plotter.set_background("white", all_renderers=True)
 for index, name in enumerate(("square", "linear", "square root")):
     plotter.subplot(0, index)
     plotter.add_halo_lines(wool, line_width=0.35, strip_width=3, max_displacement=6, displacement=name, tapering=False)
-    plotter.add_text(name, color="black", font_size=14)
+    plotter.add_text(name, position="lower_edge", color="black", font_size=18)
     plotter.camera.zoom(1.4)
 plotter.halo_lines.screenshot(folder / "displacement_functions.png", supersampling=2)

@@ -1,5 +1,4 @@
-"""
-Depth of field
+"""Depth of field
 ==============
 
 The focus is sharp, the rest is blurred and optionally darker. Gamma brightens dark parts.

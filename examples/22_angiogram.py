@@ -1,5 +1,4 @@
-"""
-An angiogram
+"""An angiogram
 ============
 
 Vessels in a volume: as a surface, by the greatest and by the first peak on each ray, and as light through a medium.

@@ -1,5 +1,4 @@
-"""
-Tracts in their anatomy
+"""Tracts in their anatomy
 =======================
 
 A T1-weighted brain, cut open, and the same brain as glass. Fibre tracts run through both.

@@ -1,5 +1,4 @@
-"""
-Inside a volume
+"""Inside a volume
 ===============
 
 A head with a part bitten out by a mesh, a box of voxels around a vessel, and a camera inside that vessel.

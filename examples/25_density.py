@@ -1,5 +1,4 @@
-"""
-Density
+"""Density
 =======
 
 Streamlines added up in voxels: as light, as mean directions, and as the mean FA. A NIfTI file keeps the counts.
@@ -36,5 +35,5 @@ image = fiblets.density(like=counts, contrast="fa").to_image().slice("y", origin
 plotter.add_mesh(image, lighting=False, scalar_bar_args={**bar, "title": "mean of FA"})
 plotter.link_views()
 plotter.view_xz()
-plotter.camera.zoom(1.3)
+plotter.camera.zoom(1.1)
 plotter.screenshot(folder / "density.png")

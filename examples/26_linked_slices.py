@@ -1,5 +1,4 @@
-"""
-Slices
+"""Slices
 ======
 
 Three slice views and a 3-D view, linked by a cross-hair: a head, fibre directions, and streamlines near each slice.

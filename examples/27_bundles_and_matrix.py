@@ -1,5 +1,4 @@
-"""
-Bundles and the matrix
+"""Bundles and the matrix
 ======================
 
 Clusters of streamlines as bundles, FA along them, and a connectivity matrix with its strongest connection.

@@ -1,5 +1,4 @@
-"""
-A figure as one HTML file
+"""A figure as one HTML file
 =========================
 
 One HTML file with the streamlines in it, which any browser draws by itself: for reviewers, notebooks and phones.

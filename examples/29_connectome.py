@@ -1,5 +1,4 @@
-"""
-A connectome
+"""A connectome
 ============
 
 Nodes are parcels. Radius and colour of an edge show how many streamlines connect two; on the right it is their mean.

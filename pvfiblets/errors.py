@@ -14,7 +14,7 @@ class FibletsError(Exception):
 
 
 class FormatError(FibletsError, ValueError):
-    """A file does not hold what its format prescribes.
+    """A file breaks its format.
 
     Parameters
     ----------
@@ -24,9 +24,9 @@ class FormatError(FibletsError, ValueError):
         Byte at which the file and the format disagree. For compressed files it counts
         decompressed bytes; ``None`` when the disagreement has no single place.
     found : str
-        What stands there.
+        The found content.
     expected : str
-        What the format prescribes, and where there is one, the remedy.
+        The content that the format requires, and the remedy if there is one.
 
     Examples
     --------

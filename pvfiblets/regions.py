@@ -13,7 +13,7 @@ Streamlines are chosen by where they lie: ``passes(region)``, ``ends_in(region)`
 ``sampling="points"`` only the points count, as for MRtrix's ``tckedit``. ``Distance(region)`` measures how near the
 points come.
 
-``RegionPainter`` paints regions on the voxels of an image, with undo, and ``LiveRegions`` tells which streamlines
+``RegionPainter`` paints regions on the voxels of an image, with undo, and ``LiveRegions`` finds which streamlines
 pass them after each stroke.
 
 Positions are mm. See :mod:`pvfiblets.query.regions.shapes` for how a region is kept.

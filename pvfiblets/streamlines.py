@@ -44,7 +44,7 @@ __all__ = ["Streamlines", "blocks", "offsets_from_counts"]
 
 
 class Streamlines:
-    """Ragged polylines with data per point, per streamline and per group.
+    """Streamlines of any lengths, with data per point, per streamline and per group.
 
     Parameters
     ----------
@@ -63,15 +63,15 @@ class Streamlines:
     affine : (4, 4) array, optional
         Voxel index to RAS+ mm of the image that the file refers to; identity if unknown.
     space : mapping, optional
-        What a writer needs besides: ``dimensions`` (3 int), ``voxel_sizes`` (3 float, mm), both along the axes of
+        Further header values for writers: ``dimensions`` (3 int), ``voxel_sizes`` (3 float, mm), both along the axes of
         ``voxel_order`` (such as ``"RAS"``; the affine's own if it is not given), and what else a header says.
     dropped : mapping of str to int, optional
-        What reading left out or noticed: reason to count.
+        Number of parts that reading omitted or changed, by reason.
 
     Raises
     ------
     ValueError
-        If shapes or offsets contradict each other; the message names the array.
+        If shapes or offsets contradict each other. The message names the array.
     """
 
     def __init__(
@@ -106,7 +106,7 @@ class Streamlines:
 
     @property
     def n_points(self) -> int:
-        """Number of points of all streamlines together."""
+        """Total number of points."""
         return len(self.points)
 
     @property
@@ -145,19 +145,19 @@ class Streamlines:
         return sample(self, image, statistic, **options)
 
     def clusters(self, threshold: float = 10.0, **options: Any) -> Clusters:
-        """Put streamlines that run alike into clusters; see :func:`pvfiblets.clusters`."""
+        """Cluster similar streamlines; see :func:`pvfiblets.clusters`."""
         from pvfiblets import clusters
 
         return clusters(self, threshold, **options)
 
     def similar(self, like: Any, distance: float = 10.0, **options: Any) -> Similar:
-        """Find streamlines that run near some others; see :func:`pvfiblets.similar`."""
+        """Find streamlines similar to given ones; see :func:`pvfiblets.similar`."""
         from pvfiblets import similar
 
         return similar(self, like, distance, **options)
 
     def plot(self, **options: Any) -> Any:
-        """Show them in a window of their own; see :func:`pvfiblets.plot`."""
+        """Show the streamlines in a new plotter; see :func:`pvfiblets.plot`."""
         from pvfiblets import plot
 
         return plot(self, **options)
@@ -240,7 +240,7 @@ class Streamlines:
     # ------------------------------------------------------------------ measures
 
     def lengths(self) -> NDArray[np.float64]:
-        """(n_streamlines,) float64: length of each streamline in mm, summed in float64."""
+        """Return the length of each streamline, (n_streamlines,) float64, mm."""
         return lengths(self.points, self.offsets)
 
     @property
@@ -274,7 +274,7 @@ class Streamlines:
 
     @classmethod
     def from_list(cls, streamlines: Iterable[ArrayLike], **rest: Any) -> Streamlines:
-        """Streamlines from a list of ``(k, 3)`` arrays.
+        """Make streamlines from a list of ``(k, 3)`` arrays.
 
         Parameters
         ----------
@@ -293,7 +293,7 @@ class Streamlines:
         return cls(points, offsets_from_counts(counts), **rest)
 
     def to_list(self) -> list[Floats]:
-        """One ``(k, 3)`` array per streamline; they share memory with this object."""
+        """Return one ``(k, 3)`` array per streamline; they share memory with this object."""
         return list(self)
 
     @classmethod
@@ -341,7 +341,7 @@ class Streamlines:
 
     @classmethod
     def from_polydata(cls, polydata: Any) -> Streamlines:
-        """Streamlines from the line cells of a PolyData.
+        """Make streamlines from the line cells of a PolyData.
 
         Parameters
         ----------
@@ -362,7 +362,7 @@ class Streamlines:
         return cls(**parts_of_polydata(polydata))
 
     def to_polydata(self) -> pyvista.PolyData:
-        """PolyData with one polyline per streamline, in order, and all data.
+        """Return a PolyData with one polyline per streamline, in order, and all data.
 
         Per-point data becomes point data, per-streamline data cell data. Groups
         (``groups/NAME``; ``groups_of``, of how many streamlines), their data (``per_group/NAME/KEY``), an affine that

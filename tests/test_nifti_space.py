@@ -215,3 +215,12 @@ def test_density_has_the_code_of_the_matrix(tract, tmp_path, capsys):
     written = nib.load(target)
     np.testing.assert_array_equal(written.affine, MIRRORED)
     assert int(written.header["sform_code"]) == 1
+
+
+@pytest.mark.filterwarnings("ignore:.*sform.*qform")
+@pytest.mark.parametrize(("choice", "left"), [("sform", 1), ("qform", 3)])
+def test_sampled_labels_follow_the_choice(tract, tmp_path, choice, left):
+    labels = image(tmp_path / "template.nii", 4, 1, MIRRORED)
+    target = tmp_path / "values.txt"
+    assert main(["sample", str(tract), str(labels), str(target), "--nearest", "--nifti-space", choice]) == 0
+    assert np.loadtxt(target)[::2].tolist() == [left] * 5 + [4 - left] * 2  # the outer ends

@@ -288,6 +288,7 @@ def add_sample(commands: Any) -> None:
                                                       "-")  # fmt: skip
     add_sampling_options(parser)
     add_format_option(parser, reads=["source"], writes="target", usual="txt")
+    add_image_options(parser)
     add_memory_option(parser)
     parser.set_defaults(run="pvfiblets.cli.samples:sample")
 

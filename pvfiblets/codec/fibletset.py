@@ -37,16 +37,16 @@ class Condition(Protocol):
 class FibletSet:
     """Compressed streamlines (paper: Schertzer et al. 2022, section 3.2; record: :mod:`pvfiblets.codec.layout`).
 
-    Made by :func:`pvfiblets.compress` or :meth:`open`; its arrays are not meant to be written to.
+    :func:`pvfiblets.compress` and :meth:`open` make such a set. Do not write to its arrays.
 
     Attributes
     ----------
     parameters : Parameters
-        What all fiblets share: origin, anchor grid, steps, lattice, promise.
+        Values that all fiblets share: origin, anchor grid, steps, lattice, error bound.
     anchors : numpy.ndarray
-        ``(n_fiblets, 2)`` uint32: what culling reads.
+        ``(n_fiblets, 2)`` uint32: the input of culling.
     decoding : numpy.ndarray
-        ``(n_fiblets, 3)`` uint32: what decoding reads.
+        ``(n_fiblets, 3)`` uint32: the input of decoding.
     reach : numpy.ndarray
         ``(n_fiblets,)`` uint16: radii of the capsules about the fiblets' chords, in units of ``reach_scale``
         (:mod:`pvfiblets.codec.capsules`).
@@ -76,9 +76,9 @@ class FibletSet:
     affine : numpy.ndarray
         ``(4, 4)`` voxel to RAS mm of the source; identity if unknown.
     space : dict
-        What writers of voxel-based formats need.
+        Further header values of the source, for writers.
     dropped : dict of str to int
-        What reading the source left out, by reason.
+        Number of parts that reading the source omitted, by reason.
     """
 
     parameters: Parameters
@@ -137,7 +137,7 @@ class FibletSet:
 
     @property
     def origin(self) -> npt.NDArray[np.float64]:
-        """``(3,)`` where anchors count from, mm."""
+        """``(3,)`` origin of the anchors, mm."""
         return np.array(self.parameters.origin)
 
     @property
@@ -302,7 +302,7 @@ class FibletSet:
 
     @classmethod
     def concatenate(cls, sets: Iterable[FibletSet]) -> FibletSet:
-        """Put sets behind each other; see :func:`pvfiblets.codec.editing.join.concatenate`.
+        """Join sets; see :func:`pvfiblets.codec.editing.join.concatenate`.
 
         Parameters
         ----------
@@ -316,14 +316,14 @@ class FibletSet:
         Raises
         ------
         ValueError
-            If there is none, or one has data that another lacks.
+            If ``sets`` is empty, or one set has data that another lacks.
         """
         from .editing.join import concatenate
 
         return concatenate(sets)
 
     def extract(self, ids: npt.ArrayLike | slice) -> FibletSet:
-        """Take some streamlines as a set of their own, without coding them again.
+        """Return some streamlines as a new set, without coding them again.
 
         Parameters
         ----------
@@ -338,7 +338,7 @@ class FibletSet:
     # ----------------------------------------------------------------------------------------------------- decoding
 
     def decompress(self, ids: npt.ArrayLike | None = None, *, dtype: npt.DTypeLike | None = None) -> Streamlines:
-        """Decode to points.
+        """Decode streamlines to points.
 
         Parameters
         ----------
@@ -351,7 +351,7 @@ class FibletSet:
         Returns
         -------
         Streamlines
-            With every value, group and header that was kept. Groups refer to the streamlines returned.
+            With all stored values, groups and headers. Groups refer to the returned streamlines.
 
         Raises
         ------
@@ -392,14 +392,14 @@ class FibletSet:
     # By the package's own names, which load the room that answers: this one knows none above it.
 
     def select(self, predicate: Condition, *, flags: Any = None) -> npt.NDArray[np.bool_]:
-        """Choose streamlines by where they lie; see :func:`pvfiblets.query.selection.predicates.select`.
+        """Return the streamlines that satisfy a condition; see :func:`pvfiblets.query.selection.predicates.select`.
 
         Parameters
         ----------
         predicate : Predicate
             Such as ``regions.passes(box) & ~regions.ends_in(sphere)`` (:mod:`pvfiblets.regions`).
         flags : callable, optional
-            What answers for a region instead of the compiled kernels: the GPU.
+            Replaces the compiled kernels that test regions, for instance by the GPU.
 
         Returns
         -------
@@ -415,7 +415,7 @@ class FibletSet:
         return chosen
 
     def density(self, voxel_size: Any = None, **options: Any) -> DensityMap:
-        """Add the streamlines up in the voxels of a grid; see :func:`pvfiblets.density`.
+        """Sum streamlines in the voxels of a grid; see :func:`pvfiblets.density`.
 
         Parameters
         ----------
@@ -433,7 +433,7 @@ class FibletSet:
         return density(self, voxel_size, **options)
 
     def connectome(self, labels: Any, **options: Any) -> Connectome:
-        """Put a number to every pair of parcels of an atlas; see :func:`pvfiblets.connectome`.
+        """Compute the connectivity matrix of an atlas; see :func:`pvfiblets.connectome`.
 
         Parameters
         ----------
@@ -476,7 +476,7 @@ class FibletSet:
         return recognise(self, models, **options)
 
     def clusters(self, threshold: float = 10.0, **options: Any) -> Clusters:
-        """Put streamlines that run alike into clusters; see :func:`pvfiblets.clusters`.
+        """Cluster similar streamlines; see :func:`pvfiblets.clusters`.
 
         Parameters
         ----------
@@ -494,7 +494,7 @@ class FibletSet:
         return clusters(self, threshold, **options)
 
     def similar(self, like: Any, distance: float = 10.0, **options: Any) -> Similar:
-        """Find streamlines that run near some others; see :func:`pvfiblets.similar`.
+        """Find streamlines similar to given ones; see :func:`pvfiblets.similar`.
 
         Parameters
         ----------
@@ -546,7 +546,7 @@ class FibletSet:
         Returns
         -------
         Table
-            Columns by name: a dict of arrays, which ``pandas.DataFrame`` and ``pyarrow.table`` take as it is.
+            Columns by name: a dict of arrays, which ``pandas.DataFrame`` and ``pyarrow.table`` accept.
         """
         from .. import table
 
@@ -591,10 +591,10 @@ class FibletSet:
         Parameters
         ----------
         path : str or PathLike
-            A name without the suffix of any format is one of a ``.fiblets`` file.
+            Without a known suffix, a ``.fiblets`` file is written.
         shards : int, optional
-            Write a folder of ``.fiblets`` files of at most so many bytes each instead, of streamlines that lie near
-            each other (:class:`pvfiblets.ShardedSet` reads parts of it).
+            Write a folder of ``.fiblets`` files of at most this number of bytes each, every one with neighbouring
+            streamlines (:class:`pvfiblets.ShardedSet` reads parts of it).
         small : bool
             Write a ``.fiblets`` file, or shards, of 0.55 to 0.75 times the bytes, to send or to keep. Opening it
             decodes it into memory, in about 20 ns of processor time a byte; other files are mapped.
@@ -633,7 +633,7 @@ class FibletSet:
 
     @classmethod
     def open(cls, path: str | PathLike[str]) -> FibletSet:
-        """Map a ``.fiblets`` file into memory: nothing is read before it is needed.
+        """Map a ``.fiblets`` file into memory; data are read when they are needed.
 
         Parameters
         ----------
@@ -651,14 +651,14 @@ class FibletSet:
         return open_fiblets(path if is_url(path) else Path(path).expanduser(), cls)
 
     def verify(self) -> None:
-        """Check that all records agree with each other.
+        """Check all records for consistency.
 
         The bytes of a file are checked by :func:`pvfiblets.codec.files.fiblets_format.verify_file`.
 
         Raises
         ------
         FormatError
-            Naming the first fiblet that is damaged and how.
+            If a fiblet is damaged. The message names the first one and the fault.
         """
         from .check import check_records
 

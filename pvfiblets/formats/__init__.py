@@ -53,7 +53,7 @@ SPACED = (".vtk", ".vtp", ".fib", *registry.READ_BY_VTK)  # suffixes of formats 
 
 
 def read(path: str | PathLike[str], *, progress: bool = False, space: str | None = None) -> Streamlines:
-    """Read a tractogram file whole.
+    """Read a tractogram file.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def read(path: str | PathLike[str], *, progress: bool = False, space: str | None
     progress : bool
         Show a progress bar, for formats whose reading takes long.
     space : {"RAS", "LPS"}, optional
-        Of the points of a file of VTK's that names none; RAS by default. DIPY wrote LPS up to 1.11.
+        Space of the points in a VTK file that names none; RAS by default. DIPY wrote LPS up to 1.11.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def read(path: str | PathLike[str], *, progress: bool = False, space: str | None
     Raises
     ------
     FormatError
-        If the file breaks its format in a way that has no safe reading.
+        If the file is damaged and cannot be read safely.
     UnknownFormatError
         If no format has this suffix.
     ValueError
@@ -86,7 +86,7 @@ def read(path: str | PathLike[str], *, progress: bool = False, space: str | None
 def iter_chunks(
     path: str | PathLike[str], max_points: int = 1 << 22, *, space: str | None = None
 ) -> Iterator[Streamlines]:
-    """Read a tractogram file piece by piece.
+    """Read a tractogram file in pieces.
 
     Parameters
     ----------

@@ -52,8 +52,8 @@ def _seconds(name: str, value: Any) -> float | None:
 class PictureComponent:
     """Smooth edges, depth of field, tone mapping, brightness, contrast and gamma of the active renderer.
 
-    They work on the finished picture of any actors, fiblets, tubes, halos, volumes and meshes alike, and leave scalar
-    bars, texts and other things that lie over it as they are. Each effect is off, and costs nothing, until it is set;
+    They apply to the finished image of all actors (fiblets, tubes, halos, volumes, meshes), but not to scalar bars,
+    texts and other overlays. Each effect is off, and costs nothing, until it is set;
     it may be set at any time, and takes effect at the next render. Subplots have settings of their own: choose one with
     :meth:`pyvista.Plotter.subplot`.
 
@@ -115,7 +115,7 @@ class PictureComponent:
 
     @property
     def samples(self) -> int:
-        """Number of samples of the last frame: 1 unless ``antialias`` has refined it."""
+        """Number of samples of the last frame: 1 unless ``antialias`` refined it."""
         refinement = self._picture().refinement
         return 1 if refinement is None else max(refinement.taken, 1)
 
@@ -141,7 +141,7 @@ class PictureComponent:
         return any(picture.fetching for picture in self._pictures.values())
 
     def pace_by_hand(self) -> None:
-        """Draw no samples automatically from now on; the caller calls :meth:`refine`."""
+        """Stop drawing samples automatically; the caller then calls :meth:`refine`."""
         self._pacer.by_hand = True
         self._pacer.release()
 

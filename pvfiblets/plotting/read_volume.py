@@ -11,7 +11,7 @@ from pvfiblets.query.density.map_files import image_of
 
 
 def read_volume(path: str | PathLike[str]) -> pv.ImageData:
-    """Read an image file with its place in space, which ``pv.read`` loses.
+    """Read an image file with its position and orientation, which ``pv.read`` discards.
 
     Parameters
     ----------

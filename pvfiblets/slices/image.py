@@ -35,7 +35,7 @@ class SliceImage:
         ``(4, 4)`` voxel indices to mm; sheared ones, too.
     name : str
     is_labels : bool
-        Whether the file says that its numbers are labels.
+        Whether the file marks its numbers as labels.
     is_colours : bool
         Whether they are bytes of red, green, blue and maybe opacity.
     fixels : Fixels, optional

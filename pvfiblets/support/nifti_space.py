@@ -48,7 +48,7 @@ _choice = _Choice()
 
 @contextmanager
 def nifti_space(matrix: Matrix | None = None, *, units: Units = "mm") -> Iterator[None]:
-    """Choose what places images of NIfTI, in all threads, for as long as the context lasts.
+    """Choose how NIfTI images are placed in space, in all threads, within the context.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def nifti_space(matrix: Matrix | None = None, *, units: Units = "mm") -> Iterato
     Raises
     ------
     ValueError
-        If either is another word.
+        If an argument has another value.
 
     Examples
     --------

@@ -72,9 +72,9 @@ class NodeValues:
 
 @dataclass(frozen=True, eq=False)
 class SplineTubes:
-    """Hermite spline tubes: nodes, segments, and the tube that each segment belongs to.
+    """Hermite spline tubes: nodes, segments, and the tube of each segment.
 
-    Arrays are taken over as they are where their type allows, and must not be changed afterwards.
+    Arrays are not copied if their type fits; do not change them afterwards.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ class SplineTubes:
 
     @property
     def n_streamlines(self) -> int:
-        """The tubes, by the name that mappers ask for."""
+        """Number of tubes, under the name that mappers use."""
         return self.n_tubes
 
     def value_reference(self, name: Any) -> float:
@@ -201,7 +201,7 @@ class SplineTubes:
 
     @property
     def n_points(self) -> int:
-        """The nodes, by the name that mappers ask for."""
+        """Number of nodes, under the name that mappers use."""
         return self.n_nodes
 
     @property
@@ -284,7 +284,7 @@ class SplineTubes:
         return replace(self, segments=self.segments[kept], tubes=self.tubes[kept])
 
     def subset(self, tubes: npt.ArrayLike) -> SplineTubes:
-        """Some tubes, in the order given, with the nodes they use and all values.
+        """Return some tubes, in the given order, with their nodes and all values.
 
         Parameters
         ----------

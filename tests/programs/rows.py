@@ -20,8 +20,8 @@ COMMANDS = {"MRtrix3": "tckinfo", "ParaView": "pvpython"}
 PACKAGES = {"DIPY": "dipy", "trx-python": "trx-python", "SimpleITK": "SimpleITK", "nibabel": "nibabel"}
 HEAD = """# Beside other programs
 
-What other programs do where a good engineer would guess otherwise, and what pvfiblets does. Each row is a test
-that runs both (`make test-programs`), last with the versions named.
+Behaviour of other programs that may surprise, and what pvfiblets does. Each row is a test that runs both programs
+(`make test-programs`), last with the named versions.
 
 | what | program | what it does | what pvfiblets does | test |
 |---|---|---|---|---|

@@ -91,10 +91,10 @@ def test_matrices_of_numbers_and_weights(folder):
 @beside(MRTRIX)
 @pytest.mark.parametrize("sampling", ["points", "lines"])
 def test_regions_that_lines_pass(folder, tmp_path, sampling):
-    """`tckedit -include`: points count: a line that crosses between two points is dropped, with a warning only if the
-    header has `step_size`.
+    """`tckedit -include`: tests points only: a line that crosses the region between two points is dropped, with a
+    warning only if the header has `step_size`.
 
-    Here: the line between points counts; `--sampling points` follows MRtrix.
+    Here: tests the line between points, too; `--sampling points` follows MRtrix.
     """
     run("tckedit", folder / "walks.tck", folder / "long.tck", tmp_path / "both.tck")
     run("tckedit", tmp_path / "both.tck", tmp_path / "theirs.tck", "-include", "20,2,2,6")
@@ -125,11 +125,11 @@ def test_regions_that_lines_pass(folder, tmp_path, sampling):
 
 @beside(MRTRIX)
 def test_voxels_that_a_long_segment_crosses(folder, tmp_path):
-    """`tckmap`: places points by the header's `step_size`: without the key two of the 40 voxels of one long segment
-    are found.
+    """`tckmap`: places points by the header's `step_size`; without this key it finds two of the 40 voxels of one
+    long segment.
 
-    Here: every voxel that a segment crosses, whatever the header; `.tck` files get their largest step as
-    `step_size`, so that tckmap finds all 40.
+    Here: counts every voxel that a segment crosses, and ignores the header; `.tck` files get their largest step as
+    `step_size`, so tckmap finds all 40.
     """
 
     def counted(source):
@@ -163,8 +163,8 @@ def test_voxels_that_a_long_segment_crosses(folder, tmp_path):
 
 @beside(MRTRIX)
 def test_lengths_in_voxels(folder, tmp_path):
-    """`tckmap -precise -contrast length`: lengths times lengths, along splines through the points; `-precise` alone is
-    mm in a voxel.
+    """`tckmap -precise -contrast length`: multiplies the length in a voxel by the streamline's length, along splines
+    through the points; `-precise` alone is mm in a voxel.
 
     Here: `density --contrast length`: mm of the segments in a voxel.
     """
@@ -212,9 +212,9 @@ def test_counts_and_lengths(folder, tmp_path, capsys):
 
 @beside(MRTRIX)
 def test_means_along_streamlines(folder, tmp_path, capsys):
-    """`tcksample -stat_tck mean`: points weigh by the length that they stand for.
+    """`tcksample -stat_tck mean`: weights each point by half the length of its two segments.
 
-    Here: the same: `table --by bundle --image`; `--weights points` weighs all the same.
+    Here: `table --by bundle --image` does the same; `--weights points` gives all points equal weights.
     """
     pf.write(tmp_path / "one.tck", Streamlines.from_list([formats.read(folder / "walks.tck")[0]]))
     run("tcksample", tmp_path / "one.tck", folder / "fa.nii", tmp_path / "mean.txt", "-stat_tck", "mean")
@@ -227,8 +227,8 @@ def test_means_along_streamlines(folder, tmp_path, capsys):
 def test_scalars_of_another_timestamp(folder, tmp_path):
     """`.tsf` beside `.tck`: `tsfvalidate` and mrview compare the timestamps of both as text.
 
-    Here: a `.tck` keeps its timestamp as long as its points, and gets one of its points' content; another one is a
-    warning.
+    Here: a `.tck` keeps its timestamp as long as its points are the same; otherwise it gets one computed from its
+    points. A `.tsf` of another timestamp causes a warning.
     """
     run("tcksample", folder / "walks.tck", folder / "fa.nii", tmp_path / "fa.tsf")
     pf.write(tmp_path / "again.tck", pf.read(folder / "walks.tck"))
@@ -239,10 +239,10 @@ def test_scalars_of_another_timestamp(folder, tmp_path):
 
 @beside(MRTRIX)
 def test_vtk_files_of_both(folder, tmp_path):
-    """`tckconvert` and VTK: writes ASCII and cannot read it; takes `double` points of a binary `.vtk` for floats, exit
-    0.
+    """`tckconvert` and VTK: writes ASCII `.vtk` files but cannot read them; reads `double` points of a binary
+    `.vtk` as floats, with exit code 0.
 
-    Here: reads both; writes float unless `--double` is given, with a note.
+    Here: reads both; writes float, and with `--double` doubles and a note.
     """
     lines = formats.read(folder / "walks.tck")
     run("tckconvert", folder / "walks.tck", tmp_path / "theirs.vtk")

@@ -39,9 +39,9 @@ def opened(path, of):
 @beside("ParaView")
 @pytest.mark.parametrize("suffix", [".vtk", ".vtp"])
 def test_tractograms(tmp_path, suffix):
-    """`.vtk` and `.vtp` files of ours: opens both, with arrays of points and of streamlines.
+    """`.vtk` and `.vtp` files of ours: opens both, with per-point and per-streamline arrays.
 
-    Here: writes legacy 4.2, which all of today's readers take, and XML.
+    Here: writes legacy 4.2, which all current readers accept, and XML.
     """
     values = np.arange(18, dtype="f4")
     lines = Streamlines.from_list(LINES, per_point={"fa": values}, per_streamline={"w": np.array([3.0, 4.0, 5.0])})

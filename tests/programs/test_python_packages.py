@@ -38,7 +38,7 @@ def test_objects_of_any_space(tractogram):
     """a `StatefulTractogram`: saving moves points to the file's space and back, 2e-6 mm a save, and float32 becomes
     float64.
 
-    Here: points are read in any of its spaces and origins, and the object stays as it is.
+    Here: reads points in any of its spaces and origins, and leaves the object unchanged.
     """
     tractogram.to_vox()
     tractogram.to_corner()
@@ -51,7 +51,7 @@ def test_objects_of_any_space(tractogram):
 def test_names_of_trx_files(tmp_path):
     """names with dots in `.trx`: cuts names at the first dot, and refuses files that hold others.
 
-    Here: replaces dots, and says so.
+    Here: replaces dots, with a warning.
     """
     trx = pytest.importorskip("trx.trx_file_memmap")
     lines = Streamlines.from_list(LINES, per_point={"b1000.FA": np.arange(sum(map(len, LINES)), dtype="f4")})
@@ -65,10 +65,10 @@ def test_names_of_trx_files(tmp_path):
 
 @beside("nibabel")
 def test_empty_streamlines(tmp_path):
-    """empty streamlines in `.tck` and `.trk`: a `.tck`'s vanish when it is read; a `.trk` of values per streamline is
-    refused.
+    """empty streamlines in `.tck` and `.trk`: drops them from a `.tck` when reading it; refuses a `.trk` that has
+    per-streamline values.
 
-    Here: both keep them; writing such a `.trk` is a warning that says how to leave them out.
+    Here: keeps them in both; writing such a `.trk` causes a warning that names the code to remove them.
     """
     lines = Streamlines.from_list([LINES[0], np.zeros((0, 3), "f4"), LINES[1]])
     pf.write(tmp_path / "a.tck", lines)
@@ -85,10 +85,10 @@ def test_empty_streamlines(tmp_path):
 
 @beside("SimpleITK")
 def test_matrices_of_nifti(tmp_path):
-    """NIfTI with both matrices: the qform where the sform's code is 2 to 5, and units of µm and m are scaled; nibabel
-    and MRtrix3 take the sform as it is.
+    """NIfTI with both matrices: uses the qform if the sform's code is 2 to 5, and scales units of µm and m; nibabel
+    and MRtrix3 use the sform unchanged.
 
-    Here: the sform, with a warning where they differ.
+    Here: uses the sform, with a warning if the two differ.
     """
     import SimpleITK
 

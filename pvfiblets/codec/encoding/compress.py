@@ -72,15 +72,15 @@ def compress(
 
     Streamlines of (nearly) constant step take one byte a point, 22 bytes per 60 points and 4 per streamline, at a mean
     error of about a hundredth of a step; any other line is kept point for point on a lattice, at two to four bytes a
-    point. Which of the two is decided for every 60 points, so that the error bound always holds.
+    point. The method is chosen for every 60 points, and the error bound always holds.
 
-    Sets of less than a megabyte keep every bit of their points, and so do sets that would take more bytes coded, such
+    Sets of less than a megabyte keep every bit of their points, and so do sets that compression would enlarge, such
     as lines of two points (:mod:`pvfiblets.codec.encoding.exact`).
 
     Parameters
     ----------
     streamlines : Streamlines
-        Points in mm, RAS+. Anything with a ``Streamlines`` constructor goes through that first.
+        Points in mm, RAS+. Other kinds of lines are converted to Streamlines first.
     step : float or 'auto'
         'auto' keeps every point. A number resamples each streamline to points that lie this far apart along it, mm, its
         two ends kept, and points between them where the line would otherwise be farther away than a quarter of the
@@ -95,8 +95,8 @@ def compress(
         Largest angle between the tangents of the original and of the decoded line, degrees, up to 90, at both ends of
         every segment longer than a pixel of a full-screen view (a 2000th of the diagonal of the bounds). Fiblets that
         would exceed it are coded more finely, and fiblets begin where lines bend little, as far as the format allows;
-        :func:`pvfiblets.measure_error` tells the angles that are drawn. None leaves directions to chance, for fewer
-        bytes where `max_error` is coarse.
+        :func:`pvfiblets.measure_error` returns the angles as drawn. None sets no bound, for fewer bytes if
+        `max_error` is coarse.
     effort : {'fast', 'high'}
         'high' looks ahead with a beam while coding: a tenth of the speed for a lower mean error at the same bytes.
     order : {'input', 'hilbert'}
@@ -120,7 +120,7 @@ def compress(
     Returns
     -------
     FibletSet
-        With per-streamline data, groups and header kept whole.
+        With all per-streamline data, groups and headers.
 
     Raises
     ------

@@ -88,12 +88,12 @@ class ColouredActor(Settings, pv.Actor):
         raise NotImplementedError
 
     def copy(self, deep: bool = True) -> Self:
-        """Return another actor that draws the same with the same looks, colours and place.
+        """Return a copy of the actor, with the same data, settings, colours and position.
 
         Parameters
         ----------
         deep : bool, default: True
-            Give the copy a property of its own; else both share one. A mapper serves one actor,
+            Copy the property, too; otherwise both actors share it. A mapper serves one actor,
             so each has its own in any case; the data are shared.
 
         Returns
@@ -139,19 +139,19 @@ class ColouredActor(Settings, pv.Actor):
         self._mapper.raise_pending()
 
     def release(self, window: Any = None) -> None:
-        """Give back the GPU memory that the actor has in a window, or in all."""
+        """Release the actor's GPU memory in a window, or in all windows."""
         self._mapper.release(window)
 
     # Colours ------------------------------------------------------------------------------------
 
     @property
     def scalars_title(self) -> str | None:
-        """Title of the scalar bar; ``None`` if the present colours need none."""
+        """Title of the scalar bar; ``None`` if the current colours need no bar."""
         return self._scalars.title if self._scalars is not None and self._scalars.mapped else None
 
     @property
     def legend_color(self) -> pv.Color:
-        """One colour that stands for all: their own, the middle of the colour map, or the mean."""
+        """One colour for the legend: the actor's, the middle of the colour map, or the mean."""
         if self._scalars is None:
             return self._solid_color()
         if self._scalars.mapped:
@@ -166,7 +166,7 @@ class ColouredActor(Settings, pv.Actor):
 
     @property
     def shows_labels(self) -> bool:
-        """Whether the numbers that colour the actor are labels, each with a name."""
+        """Whether the colours stand for labels with names."""
         return self._scalars is not None and self._scalars.categories is not None
 
     @property
@@ -188,7 +188,7 @@ class ColouredActor(Settings, pv.Actor):
 
     @property
     def lookup_table(self) -> pv.LookupTable:
-        """The table that colours both the picture and the scalar bar."""
+        """The look-up table of the frame and of the scalar bar."""
         return self._table
 
     def watch(self, bar_changed: Callable[[Any], None] | None) -> None:

@@ -31,7 +31,7 @@ class Plotted(EngineMapper[AnyOptions]):
 
     @property
     def lookup_table(self) -> pv.LookupTable:
-        """The table that colours both the picture and the scalar bar."""
+        """The look-up table of the frame and of the scalar bar."""
         return self._owner.lookup_table
 
     @lookup_table.setter

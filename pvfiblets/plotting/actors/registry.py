@@ -179,7 +179,7 @@ class ActorRegistry(Generic[A]):
         return len(self._actors)
 
     def explain(self) -> list[dict[str, Any]]:
-        """Return what each actor's drawing costs.
+        """Return the rendering cost of each actor.
 
         Returns
         -------
@@ -239,7 +239,7 @@ class ActorRegistry(Generic[A]):
     # Life cycle ---------------------------------------------------------------------------------
 
     def show_in(self, actor: A, renderer: Any) -> None:
-        """Show an actor in another of the plotter's renderers, too; both draw the same memory.
+        """Show an actor in another renderer of the plotter, too; both share GPU memory.
 
         Parameters
         ----------

@@ -216,13 +216,13 @@ class ConnectomeGraph:
 
     @property
     def is_shown(self) -> bool:
-        """Whether the plotter still has it."""
+        """Whether the connectome is in the plotter."""
         actors = [actor for actor in (self.node_actor, self.edge_actor) if actor is not None]
         there = any(self._renderer.HasViewProp(actor) for actor in actors)
         return there or (self._renderer is not None and not actors)
 
     def remove(self) -> None:
-        """Take nodes, edges and the scalar bar out of the plotter."""
+        """Remove nodes, edges and the scalar bar from the plotter."""
         if self._renderer is not None:
             with self._in_its_view():
                 self._take_away(self.node_actor)

@@ -59,7 +59,7 @@ class PlottedMapper(PlottedLines[EngineOptions], FibletMapper):
 
 
 class FibletActor(FibletSettings, SelectableActor):
-    """Streamlines drawn from their compressed form.
+    """Streamlines rendered from their compressed form.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
     ``pickable``, ``prop`` …). The properties below may be set at any time and take effect at the
@@ -120,7 +120,7 @@ class FibletActor(FibletSettings, SelectableActor):
 
     @property
     def fiblets(self) -> FibletSet:
-        """The compressed data; another set may be put in its place."""
+        """The compressed data; can be replaced by another set."""
         return self._fiblets
 
     @fiblets.setter
@@ -131,19 +131,19 @@ class FibletActor(FibletSettings, SelectableActor):
             self._show(scalars)
 
     def update(self, source: Any, **options: Any) -> None:
-        """Draw other streamlines from the next render on, as they move or grow; settings stay.
+        """Replace the streamlines, for instance when they move or grow; settings stay.
 
         Parameters
         ----------
         source : path, FibletSet, Streamlines, pyvista.PolyData or list of (n, 3) arrays
-            As for ``plotter.add_fiblets``. Per-point arrays that colour now are kept.
+            As for ``plotter.add_fiblets``. The per-point array of the current colours is kept.
         **options
             Of :func:`pvfiblets.compress`.
 
         Raises
         ------
         KeyError, ValueError
-            If it lacks what colours now; nothing is changed then.
+            If it lacks the array of the current colours; the actor is then unchanged.
         """
         self.fiblets = as_fiblets(source, scalars=self._choice, rgb=self._rgb, **options)[0]
 
@@ -151,7 +151,7 @@ class FibletActor(FibletSettings, SelectableActor):
         return {"fiblets": self._fiblets, "scalars": self._choice}
 
     def explain(self) -> dict[str, Any]:
-        """Return the active features of this actor and their cost, over all windows that show it.
+        """Return the active features of this actor and their cost, in all its windows.
 
         Returns
         -------
@@ -371,12 +371,12 @@ class FibletActor(FibletSettings, SelectableActor):
 
     @property
     def pipeline_in_use(self) -> str | None:
-        """The pipeline that drew the last picture; ``None`` before the first."""
+        """The pipeline that rendered the last frame; ``None`` before the first."""
         return self._mapper.pipeline_in_use
 
     @property
     def share(self) -> float | None:
-        """Share of the streamlines that is drawn: 1.0 for all; ``None`` before the first picture.
+        """Share of the streamlines that is drawn: 1.0 for all; ``None`` before the first frame.
 
         Less only where memory does not suffice for all, and ``fit`` is ``"sample"``; or it is ``"stream"``, and parts
         in view have not been drawn yet: then of the drawn ones.

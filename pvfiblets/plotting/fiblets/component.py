@@ -187,41 +187,39 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         font_size: int = 18,
         color: Any = None,
     ) -> None:
-        """Pick streamlines with the mouse; replaces earlier picking.
+        """Pick streamlines with the mouse; this replaces earlier picking.
 
         Parameters
         ----------
         callback : callable, optional
             Called with a :class:`~pvfiblets.plotting.fiblets.pick_result.Picked` for each actor with
-            picked streamlines; not called otherwise.
+            picked streamlines.
         mode : {"click", "box", "lasso"}
             ``"click"``: the streamline nearest to the mouse; dragging still turns the camera.
-            ``"box"`` and ``"lasso"``: all within the shape drawn with the left button, after the
-            ``r`` key has been pressed, which is PyVista's key for rectangles, until it is pressed
-            again. A click picks then, too.
+            ``"box"`` and ``"lasso"``: all streamlines within the shape drawn with the left button. The ``r``
+            key (PyVista's key for rectangles) starts and ends this mode. A click picks then, too.
         through : bool, default: False
-            Everything under the mouse or the area, occluded streamlines too. Otherwise only visible ones:
-            with the ids of the frame. Opaque actors in front do occlude streamlines;
-            translucent ones do not.
+            Pick all streamlines under the mouse or in the area, occluded ones too; otherwise only
+            visible ones. Opaque actors occlude streamlines, translucent ones do not.
         button : {"left", "right"}
-            That clicks.
+            Mouse button of a click.
         tolerance : float, default: 4.0
-            Pixels between the mouse and a streamline.
+            Largest distance between the mouse and a streamline, pixels.
         tooltip : bool or callable, default: False
-            Say beside the mouse which streamline is under it, where along it, its value and its
-            groups; or what a function of a :class:`Picked` says.
+            Show index, position, value and groups of the streamline under the mouse; or the text that
+            a function of a :class:`Picked` returns.
         select : bool, default: True
-            Select the result (:meth:`FibletActor.select`): with Shift it is added, with Control
-            it changes sides. Nothing picked and no key held: nothing is selected.
+            Select the picked streamlines (:meth:`FibletActor.select`): Shift adds them, Control
+            toggles them. A pick of nothing, without a key, clears the selection.
         start : bool, default: False
-            Draw areas at once, without the ``r`` key.
+            Draw areas without pressing the ``r`` key first.
         show_message : bool or str, default: True
-            Show how to pick.
+            Show a message that explains picking.
         font_size : int, default: 18
-            Of the message.
+            Size of the message.
         color : color-like, optional
-            Of the outline of areas and of the message; black or white by default, whichever stands
-            out against the background.
+            Colour of the outline of areas and of the message; by default black or white, by contrast
+            with the background.
 
         Raises
         ------
@@ -260,7 +258,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         render: bool = True,
         **mesh_options: Any,
     ) -> FibletSlab:
-        """Cut actors to a slab, and show the slice of a volume in it.
+        """Cut actors to a slab, and show the slice of a volume in its middle.
 
         Parameters
         ----------
@@ -324,7 +322,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         actor : FibletActor or sequence of FibletActor, optional
             What is cut; all fiblet actors by default.
         normal : str or (3,) array, default: "x"
-            What it points to stays.
+            Normal of the plane; the side to which it points stays.
         origin : (3,) array, optional
             A point of the plane; the middle of the actors by default, mm.
         invert : bool, default: False
@@ -487,7 +485,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         -------
         widget : pyvista.plotting.affine_widget.AffineWidget3D
         actor : pyvista.Actor
-            Of the mesh; its ``user_matrix`` says where it is.
+            Draws the mesh; its ``user_matrix`` places it.
 
         Raises
         ------
@@ -529,7 +527,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
     # Pipelines and pages ------------------------------------------------------------------------
 
     def pipelines(self) -> PipelineTable:
-        """Return every pipeline: whether the plotter's OpenGL has it, or why not.
+        """Return all pipelines, each with its availability in the plotter's OpenGL, or the missing requirement.
 
         Returns
         -------
@@ -561,7 +559,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
     def export_page(
         self, path: str | PathLike[str], *, title: str | None = None, largest_file: int | None = None
     ) -> list[Path]:
-        """Write what the active renderer shows as a page that any browser draws by itself, without a server.
+        """Write the active renderer's scene as a page that any browser renders, without a server.
 
         Streamlines stay compressed in it, 1.9 bytes a point, and the reader's graphics card decodes them: the picture
         can be turned, zoomed, cut and picked in. Surfaces of ``add_mesh``, slices of images, colour bars and lights go
@@ -574,8 +572,8 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         title : str, optional
             Of the page; the plotter's by default.
         largest_file : int, optional
-            Bytes of data above which they lie in a folder beside the page, which then needs a web server; 64 MB by
-            default.
+            Bytes of data above which data are written to a folder beside the page, which then needs a web server;
+            64 MB by default.
 
         Returns
         -------
@@ -592,7 +590,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         Warns
         -----
         UserWarning
-            Naming what a page cannot draw: tubes, halos, volumes, and effects on lines other than light.
+            If a page cannot draw parts of the scene: tubes, halos, volumes, and effects on lines other than light.
 
         Examples
         --------

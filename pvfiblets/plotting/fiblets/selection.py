@@ -35,7 +35,7 @@ class SelectableActor(BundledActor):
 
     @property
     def active_scalars(self) -> Scalars | None:
-        """What colours the actor, as found; ``None`` for one colour."""
+        """Resolved source of the colours; ``None`` for one colour."""
         return self._scalars
 
     def select(
@@ -49,7 +49,7 @@ class SelectableActor(BundledActor):
             Numbers (negative ones count from the end), a mask ``(n_streamlines,)`` of bool, a slice, a pick, or
             a condition or region as for :meth:`streamlines_where`.
         mode : {"replace", "add", "remove", "toggle"}
-            What becomes of the present selection.
+            Effect on the current selection.
         as_tubes : bool, optional
             Whether the selection is drawn as tubes from now on, see :meth:`selection_style`.
         radius : float, optional
@@ -71,7 +71,7 @@ class SelectableActor(BundledActor):
             raise
 
     def grow_selection(self, distance: float) -> None:
-        """Add the streamlines that begin and end near the ends of a selected one.
+        """Add the streamlines whose two ends are near the ends of a selected streamline.
 
         Parameters
         ----------
@@ -252,7 +252,7 @@ class SelectableActor(BundledActor):
         return Profile(mean, std, np.linspace(0.0, 1.0, n), name, len(self.selection))
 
     def save_selection(self, path: str | PathLike[str]) -> list[str]:
-        """Write the selected streamlines to a file; its suffix says in which format.
+        """Write the selected streamlines to a file, in the format of its suffix.
 
         Parameters
         ----------
@@ -290,7 +290,7 @@ class SelectableActor(BundledActor):
             self._standout.mapper.raise_pending()
 
     def release(self, window: Any = None) -> None:
-        """Give back the GPU memory that the actor has in a window, or in all."""
+        """Release the actor's GPU memory in a window, or in all windows."""
         super().release(window)
         if self._standout is not None:
             self._standout.leave_with_owner()

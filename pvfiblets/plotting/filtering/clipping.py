@@ -33,7 +33,7 @@ class ClippedActor(ColouredActor):
             ``(normal, origin)``. In world coordinates. Several cuts add up; ``&``, ``|``, ``~`` of
             regions make others.
         inside : bool, default: True
-            Which side stays: of a plane, that which the normal points to.
+            Show the inside; of a plane, the side to which its normal points. False shows the outside.
         name : str, optional
             Replaces the cut of the same name.
 
@@ -58,7 +58,7 @@ class ClippedActor(ColouredActor):
         return name
 
     def clip_slab(self, normal: Any, origin: Any, thickness: float, *, name: str | None = None) -> str:
-        """Cut a slab out, as of a radiologist's slice.
+        """Show only a slab, such as a thick radiological slice.
 
         Parameters
         ----------
@@ -79,12 +79,12 @@ class ClippedActor(ColouredActor):
         return self.clip(slab(normal, origin, thickness), name=name)
 
     def unclip(self, name: str | None = None) -> None:
-        """Take a cut back by its `name`, or all of them."""
+        """Remove a cut by its `name`, or all."""
         self._cut(without(self._clips, name, "cut"))
 
     @property
     def clips(self) -> Mapping[str, Region]:
-        """Cuts by name, in the order in which they were made."""
+        """Cuts by name, in order of creation."""
         return MappingProxyType(dict(self._clips))
 
     def _cut(self, clips: Mapping[str, Region]) -> None:

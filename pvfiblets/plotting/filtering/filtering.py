@@ -92,7 +92,7 @@ class FilteredActor(ClippedActor):
         KeyError
             If the values do not exist; the message lists the existing ones.
         ValueError
-            If the range is none, or an array has the wrong length.
+            If the range is invalid, or an array has the wrong length.
         """
         low, high = checked_range(range)
         known = self._choices.criteria
@@ -115,7 +115,7 @@ class FilteredActor(ClippedActor):
         return name
 
     def remove_criterion(self, name: str | None = None) -> None:
-        """Take a criterion back by its `name`, or all of them."""
+        """Remove a criterion by its `name`, or all."""
         self._choose(criteria=without(self._choices.criteria, name, "criterion"))
 
     # Regions ------------------------------------------------------------------------------------
@@ -146,11 +146,11 @@ class FilteredActor(ClippedActor):
 
     @property
     def conditions(self) -> Mapping[str, Predicate]:
-        """Conditions that streamlines fulfil to be shown, by name."""
+        """Conditions that visible streamlines satisfy, by name."""
         return MappingProxyType({n: c.predicate for n, c in self._choices.conditions.items()})
 
     def remove_condition(self, name: str | None = None) -> None:
-        """Take a condition back by its `name`, or all of them."""
+        """Remove a condition by its `name`, or all."""
         self._choose(conditions=without(self._choices.conditions, name, "condition"))
 
     def streamlines_where(self, condition: Any) -> np.ndarray:
@@ -172,7 +172,7 @@ class FilteredActor(ClippedActor):
     # Subsets ------------------------------------------------------------------------------------
 
     def subset(self, amount: float | None = None, *, seed: int = 0, every: int | None = None) -> None:
-        """Show some streamlines only, whatever they are.
+        """Show a random or regular subset of the streamlines.
 
         Parameters
         ----------
@@ -192,7 +192,7 @@ class FilteredActor(ClippedActor):
 
     @property
     def groups_shown(self) -> tuple[str, ...] | None:
-        """Names of the groups that are shown, None for all streamlines, in a group or not."""
+        """Names of the visible groups; None for all streamlines, also those without a group."""
         return self._choices.groups
 
     @groups_shown.setter
@@ -220,12 +220,12 @@ class FilteredActor(ClippedActor):
 
     @property
     def shown(self) -> np.ndarray:
-        """Which streamlines are shown as far as they are chosen as a whole, (n_streamlines,) bool."""
+        """Visible streamlines, (n_streamlines,) bool; cuts and per-point criteria do not count."""
         mask = self._choices.mask(self._subject.lines)
         return np.ones(len(self._subject.lines), bool) if mask is None else mask.copy()
 
     def show_all(self) -> None:
-        """Take all criteria, conditions, subsets and cuts back."""
+        """Remove all criteria, conditions, subsets and cuts."""
         self._choices = Choices()
         self._choose()
         self._cut({})

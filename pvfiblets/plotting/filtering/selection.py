@@ -94,7 +94,7 @@ class SelectedActor(FilteredActor):
             Numbers (negative ones count from the end), a mask of bool, one for each line, a slice, a pick, or a
             condition or region as for :meth:`streamlines_where`.
         mode : {"replace", "add", "remove", "toggle"}
-            What becomes of the present selection.
+            Effect on the current selection.
 
         Raises
         ------
@@ -114,7 +114,7 @@ class SelectedActor(FilteredActor):
         self._select(chosen)
 
     def deselect(self, ids: Any = None) -> None:
-        """Take lines out of the selection, or all of them; ``ids`` as for :meth:`select`."""
+        """Remove lines from the selection, by default all; ``ids`` as for :meth:`select`."""
         if ids is None:
             self._select(None)
         else:

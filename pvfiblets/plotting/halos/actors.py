@@ -278,9 +278,9 @@ class HaloLineActor(HaloLineSettings, HaloActor):
 
     @property
     def lines(self) -> HaloLines:
-        """What is drawn; others may be put in their place.
+        """The drawn data; can be replaced.
 
-        Widths that were not given are measured anew. What colours and filters must be there, too.
+        Widths that were not given are measured again. New data need the arrays of the current colours and filters.
         """
         return cast("HaloLines", self._held.drawn)
 
@@ -321,9 +321,9 @@ class HaloPointActor(HaloPointSettings, HaloActor):
 
     @property
     def points(self) -> HaloPoints:
-        """What is drawn; others may be put in their place.
+        """The drawn data; can be replaced.
 
-        Sizes that were not given are measured anew. What colours and filters must be there, too.
+        Sizes that were not given are measured again. New data need the arrays of the current colours and filters.
         """
         return cast("HaloPoints", self._held.drawn)
 

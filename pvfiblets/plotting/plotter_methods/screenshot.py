@@ -45,20 +45,19 @@ class PrintableComponent(ActorRegistry[A]):
         filename : str, path or file object, optional
             Where to write it; ``.png`` without a suffix.
         scale : int, default: 1
-            Pixels of the picture for one of the window, along each side.
+            Pixels of the image per pixel of the window, along each side.
         one_bit : bool, default: False
             Pure black and white, one bit a pixel, as in the paper: white where a pixel is at least
             half as bright as white, without dithering. The file is a ``.png``, ``.tif`` or ``.bmp``.
         supersampling : int, default: 1
-            Draw so many times larger along each side, and let each pixel be the mean: greys at
-            edges. With ``one_bit`` the mean decides. By default ``plotter.picture.antialias`` says
-            how edges are smoothed.
+            Render this many times larger along each side, and average, for smooth edges; ``one_bit``
+            compares the average. By default edges are smoothed by ``plotter.picture.antialias``.
         window_size : (int, int), optional
-            Width and height of the window while the picture is taken.
+            Width and height of the window for this image.
         dpi : float, optional
-            Pixels per inch, for the file to say how large it wants to be printed.
+            Pixels per inch, which set the printed size.
         return_img : bool, default: True
-            Return the picture.
+            Return the image.
 
         Returns
         -------

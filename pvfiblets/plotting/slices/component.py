@@ -210,7 +210,7 @@ class SlicesComponent:
         Raises
         ------
         ValueError
-            If the plotter has fewer than four views, or as of ``plotter.add_slices``.
+            If the plotter has fewer than four views, or as for ``plotter.add_slices``.
 
         Examples
         --------
@@ -268,7 +268,7 @@ class SlicesComponent:
         slices : SliceStack, optional
             Of which images; of the slices that were added last by default.
         normal : (3,) array, default: (0, -0.5, 1)
-            Across the slice.
+            Normal of the slice.
         name : str, default: "oblique"
             Of the plane: ``slices[name]``.
         widget : bool, default: True

@@ -86,7 +86,7 @@ class SliceLayer(SliceSettings):
         self._changed = changed
 
     def data_changed(self) -> None:
-        """Show the image's values anew, which somebody has changed in place."""
+        """Update the slices after the image's values were changed in place."""
         for one in self._resamplers.values():
             one.changed()
         if self._changed is not None:
@@ -126,7 +126,7 @@ class SliceLayer(SliceSettings):
 
     @property
     def outside_level(self) -> float | None:
-        """Values up to it are transparent in the 3-D view where they reach the border of a slice; None for none."""
+        """Largest transparent value around the object in the 3-D view (see ``outside``); None for none."""
         if self._weights is not None:
             return self._weights.outside_level
         given: float | None = self._state["outside"]
@@ -147,7 +147,7 @@ class SliceLayer(SliceSettings):
         return self._resampler().at(grid, self._how())
 
     def value_at(self, position: npt.ArrayLike) -> Any:
-        """Return what the image is at a position in mm.
+        """Return the value of the image at a position in mm.
 
         Returns
         -------

@@ -189,7 +189,7 @@ class Pane:
     # Picture ------------------------------------------------------------------------------------
 
     def changed(self) -> None:
-        """Make the slice anew with the next render."""
+        """Render the slice again with the next frame."""
         self._version += 1
 
     def prepare(self) -> None:

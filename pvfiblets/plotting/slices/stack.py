@@ -29,7 +29,7 @@ MOST_LAYERS = 8
 class SliceStack:
     """Axial, coronal and sagittal slices of up to eight images; ``plotter.add_slices`` makes it.
 
-    Its properties may be set at any time and show with the next render. ``stack["axial"]`` is one of its planes.
+    Its properties can be set at any time and take effect at the next render. ``stack["axial"]`` is one of its planes.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ class SliceStack:
         Raises
         ------
         ValueError
-            If there are eight layers already, or as of ``plotter.add_slices``.
+            If there are eight layers already, or as for ``plotter.add_slices``.
         """
         unknown = next((one for one in settings if one not in SliceSettings.DECLARED), None)
         if unknown is not None:
@@ -168,7 +168,7 @@ class SliceStack:
         return layer
 
     def remove_layer(self, layer: SliceLayer | str) -> None:
-        """Take a layer, or that of a name, away."""
+        """Remove a layer, given itself or by name."""
         layer = self.layer(layer) if isinstance(layer, str) else layer
         self._layers.remove(layer)
         layer.watch(None)
@@ -203,7 +203,7 @@ class SliceStack:
     ) -> GlyphSet:
         """Show peaks and fixels as lines, tensors as ellipsoids or spherical harmonics as lobes, on the slices.
 
-        Only glyphs of the voxels that visible slices go through are made.
+        Glyphs are made only for voxels on visible slices.
 
         Parameters
         ----------
@@ -298,7 +298,7 @@ class SliceStack:
         return self.add_glyphs(source, "fixels", scalars=scalars, **options)
 
     def remove_glyphs(self, glyphs: GlyphSet) -> None:
-        """Take glyphs away that :meth:`add_glyphs` returned; twice is harmless."""
+        """Remove glyphs that :meth:`add_glyphs` returned; a second call has no effect."""
         glyphs.remove()
         if glyphs in self._glyphs:
             self._glyphs.remove(glyphs)
@@ -318,7 +318,7 @@ class SliceStack:
 
     @property
     def position(self) -> Array:
-        """``(3,)`` mm: where all planes meet."""
+        """``(3,)`` mm: the intersection of all planes."""
         return self._position.copy()
 
     @position.setter
@@ -328,7 +328,7 @@ class SliceStack:
 
     @property
     def voxel(self) -> tuple[int, int, int] | None:
-        """The voxel of the lowest layer that holds the position; None outside of it."""
+        """Voxel of the lowest layer at the position; None outside the layer."""
         return self._layers[0].image.voxel_at(self._position) if self._layers else None
 
     @voxel.setter
@@ -419,7 +419,7 @@ class SliceStack:
         return all(one.kind != "labels" and one.interpolation != "nearest" for one in shown)
 
     def values(self, position: Any = None) -> dict[str, Any]:
-        """Return what all layers are at a position.
+        """Return the values of all layers at a position.
 
         Parameters
         ----------
@@ -447,7 +447,7 @@ class SliceStack:
         self._watchers.append(changed)
 
     def changed(self) -> None:
-        """Make all slices anew."""
+        """Render all slices again."""
         for plane in self._planes.values():
             plane.update()
         for call in self._watchers:
@@ -458,7 +458,7 @@ class SliceStack:
         self._removal = removal
 
     def remove(self) -> None:
-        """Take all slices away; twice is harmless."""
+        """Remove all slices; a second call has no effect."""
         while self._glyphs:
             self._glyphs.pop().remove()
         removal, self._removal = self._removal, None

@@ -114,7 +114,7 @@ class Workspace:
 
     @property
     def voxel(self) -> tuple[int, int, int] | None:
-        """The cross-hair's voxel of the lowest image; None outside of it."""
+        """Voxel of the lowest image at the cross-hair; None outside the image."""
         return self.slices.voxel
 
     @voxel.setter
@@ -150,7 +150,7 @@ class Workspace:
 
     @property
     def told(self) -> bool:
-        """Whether the axial pane says position and values in its corner."""
+        """Whether the axial pane shows position and values in its corner."""
         return self._told
 
     @told.setter
@@ -253,7 +253,7 @@ class Workspace:
         Parameters
         ----------
         normal : (3,) array, default: (0, -0.5, 1)
-            Across the slice.
+            Normal of the slice.
         widget : bool, default: True
             Whether there is a widget in the 3-D view.
         color : color-like
@@ -422,7 +422,7 @@ class Workspace:
         return picked_on_planes(self._renderers["3d"], self.slices, x, y)
 
     def pane_at(self, x: float, y: float) -> Pane | None:
-        """Return the pane of a pixel of the window; None if it is none's."""
+        """Return the pane at a window pixel; None outside all panes."""
         for name, pane in self.panes.items():
             if name not in self._places:
                 continue

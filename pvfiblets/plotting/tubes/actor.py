@@ -96,9 +96,9 @@ class TubeActor(TubeSettings, LineActor):
 
     @property
     def tubes(self) -> SplineTubes:
-        """What is drawn; others may be put in their place.
+        """The drawn data; can be replaced.
 
-        Numbers that are computed, such as ``"radius"`` as scalars, are computed anew.
+        Computed scalars, such as ``"radius"``, are computed again.
         """
         return self._tubes
 

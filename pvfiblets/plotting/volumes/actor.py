@@ -62,7 +62,7 @@ class _PlottedRaycast(Plotted[Options], VolumeMapper):
 
 
 class VolumeActor(VolumeSettings, ClippedActor):
-    """A volume that rays are cast through: surfaces, light, or peaks.
+    """A ray-cast volume: surfaces, light, or peaks.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
     ``pickable``, ``prop`` with its ``specular`` and so on, of surfaces). The properties below may be
@@ -133,7 +133,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
 
     @property
     def volume(self) -> RaycastVolume:
-        """The drawn volume, not smoothed; another may be put in its place."""
+        """The volume, before smoothing; can be replaced by another one."""
         return self._source
 
     @volume.setter
@@ -142,7 +142,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
         self._given = None
 
     def update(self, source: Any = None, **where: Any) -> None:
-        """Draw other numbers from the next render on, as they change with time; settings stay.
+        """Replace the values, for instance of a time series; settings stay.
 
         Parameters
         ----------
@@ -205,7 +205,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
 
     @property
     def casting(self) -> RaycastOptions:
-        """All settings of the rays as they are drawn."""
+        """All current settings of the rays."""
         return self._casting
 
     def _read_values(self) -> tuple[float, ...]:
@@ -249,7 +249,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
     # Questions ----------------------------------------------------------------------------------
 
     def pick_at(self, x: int, y: int) -> RayHit | None:
-        """Return what a window pixel shows of the volume.
+        """Return the position and value of the volume at a window pixel.
 
         Parameters
         ----------
@@ -267,7 +267,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
         return self._mapper.pick_at(x, y)
 
     def explain(self) -> dict[str, Any]:
-        """Return the active features of this actor and their cost, over all windows that show it.
+        """Return the active features of this actor and their cost, in all its windows.
 
         Returns
         -------

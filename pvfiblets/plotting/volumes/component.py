@@ -41,7 +41,7 @@ COLOURING = {"color", "cmap", "clim", "n_colors", "log_scale", "surface_colors",
 
 @register("raycast_volumes")
 class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
-    """The volumes of one plotter that rays are cast through.
+    """The ray-cast volumes of one plotter.
 
     Parameters
     ----------
@@ -102,10 +102,10 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
         categories: bool | int = False,
         preference: str | None = None,
     ) -> VolumeActor:
-        """Add a volume to the scene, through which a ray is cast for each pixel.
+        """Add a volume to the scene, rendered by one ray per pixel.
 
-        Surfaces cut into meshes and lines as meshes do. Light and peaks end at whatever is opaque,
-        be it added before or after, and so do tracts and meshes show in their anatomy.
+        Surfaces intersect meshes and lines as meshes do. Rays of light and peaks end at opaque objects,
+        added before or after, so tracts and meshes are visible within their anatomy.
 
         Parameters
         ----------

@@ -237,9 +237,9 @@ class VolumeSettings(Settings):
     iterations: Setting[int] = Setting(5, "Steps of the refinement, 1 to 64.", kind="int", where=CASTING)
     integrator: Setting[str] = Setting(
         "adaptive",
-        'Integration of light over a step. ``"adaptive"``, the default, is within a hundredth of the exact '
-        'light at any density and steepness of opacities: each step is taken as by ``"preintegrated"``, '
-        "in parts where values bend, or halved until its halves agree.",
+        'Integration of light over a step. ``"adaptive"``, the default, keeps the error of light below a '
+        "hundredth, except in a few pixels of noise: each step is computed as by "
+        '``"preintegrated"``, in parts if values bend, or halved until its halves agree.',
         kind="str",
         choices=INTEGRATORS,
         where=CASTING,

@@ -30,7 +30,7 @@ COLOR, VISIBLE = "color", "visible"
 
 
 class Bundle:
-    """One bundle of a list; takes the place of its streamlines' numbers: ``fiblets[bundle]``.
+    """One bundle of a list; usable as an index: ``fiblets[bundle]``.
 
     Its ``name``, ``color`` and ``visible`` can be set.
     """
@@ -50,7 +50,7 @@ class Bundle:
 
     @property
     def name(self) -> str:
-        """Its name; another one renames it."""
+        """Name; setting it renames the bundle."""
         return self._name
 
     @name.setter
@@ -60,7 +60,7 @@ class Bundle:
 
     @property
     def ids(self) -> Ints:
-        """``(k,)`` int64: its streamlines, rising, each once."""
+        """``(k,)`` int64: indices of its streamlines, in rising order."""
         return self._bundles.ids(self._name)
 
     @property
@@ -93,7 +93,7 @@ class Bundles:
     Parameters
     ----------
     data : FibletSet or Streamlines
-        Whose ``groups`` and ``per_group`` are read and changed.
+        The list reads and changes its ``groups`` and ``per_group``.
     on_change : callable, optional
         Called after each change, without arguments.
     """
@@ -125,7 +125,7 @@ class Bundles:
 
     @property
     def names(self) -> list[str]:
-        """Names in their order."""
+        """Names of the bundles, in order."""
         return list(self.data.groups)
 
     def ids(self, name: str) -> Ints:
@@ -134,12 +134,12 @@ class Bundles:
 
     @property
     def colors(self) -> dict[str, Colour]:
-        """Colour of each bundle, red, green, blue from 0 to 1; without one of its own, by its place."""
+        """Colour of each bundle, red, green, blue from 0 to 1; by default from its place in the list."""
         return group_colours(self.data.groups, self.data.per_group)
 
     @property
     def rest(self) -> Ints:
-        """``(k,)`` int64: streamlines that are in no bundle."""
+        """``(k,)`` int64: streamlines in no bundle."""
         free = np.ones(len(self.data), bool)
         for members in self.data.groups.values():
             free[np.asarray(members, np.int64)] = False
@@ -166,7 +166,7 @@ class Bundles:
         Raises
         ------
         ValueError
-            If the name is taken or empty, or the colour is none.
+            If the name is taken or empty, or the colour is invalid.
         IndexError
             If a streamline is out of range.
         """
@@ -183,7 +183,7 @@ class Bundles:
         return Bundle(self, name)
 
     def add_all(self, groups: Mapping[str, Any]) -> None:
-        """Add several bundles by name, such as :meth:`.Clusters.groups` gives; none if one cannot be added."""
+        """Add bundles from a dict of streamlines by name, such as :meth:`.Clusters.groups`; all or none."""
         members = {}
         for name, ids in groups.items():
             self._free(name)
@@ -194,14 +194,14 @@ class Bundles:
         self._changed()
 
     def remove(self, name: str) -> None:
-        """Take a bundle off the list; its streamlines stay in the set."""
+        """Remove a bundle from the list; its streamlines stay in the set."""
         self._known(name)
         del self.data.groups[name]
         self.data.per_group.pop(name, None)
         self._changed()
 
     def rename(self, name: str, new: str) -> None:
-        """Give a bundle another `new` name, in its place of the list."""
+        """Rename a bundle; its place in the list stays."""
         self._known(name)
         if new == name:
             return
@@ -213,7 +213,7 @@ class Bundles:
         self._changed()
 
     def merge(self, names: Iterable[str], into: str, *, keep: bool = False) -> Bundle:
-        """Join bundles: streamlines that are in any.
+        """Merge bundles: the union of their streamlines.
 
         Parameters
         ----------
@@ -250,7 +250,7 @@ class Bundles:
         return Bundle(self, into)
 
     def subtract(self, name: str, others: str | Iterable[str], *, into: str | None = None) -> Bundle:
-        """Take the streamlines of other bundles out of one.
+        """Remove the streamlines of other bundles from a bundle.
 
         Parameters
         ----------
@@ -273,12 +273,12 @@ class Bundles:
         return Bundle(self, name)
 
     def set_ids(self, name: str, ids: Any) -> None:
-        """Give a bundle other streamlines; `ids` as for :meth:`add`."""
+        """Replace the streamlines of a bundle; `ids` as for :meth:`add`."""
         self.data.groups[self._known(name)] = self._members(ids)
         self._changed()
 
     def reorder(self, names: Iterable[str]) -> None:
-        """Put the bundles named first, in this order; the others follow in theirs."""
+        """Move the named bundles to the front, in this order."""
         first = [self._known(name) for name in names]
         if len(set(first)) != len(first):
             raise ValueError(f"the order {first} names a bundle twice")
@@ -302,7 +302,7 @@ class Bundles:
         self._changed()
 
     def show_only(self, names: str | Iterable[str]) -> None:
-        """Hide all bundles but some."""
+        """Hide all bundles except the named ones."""
         wanted = {self._known(name) for name in ([names] if isinstance(names, str) else names)}
         for name in self.names:
             if name in wanted:
@@ -314,7 +314,7 @@ class Bundles:
     # --------------------------------------------------------------------------------------------------------- files
 
     def export(self, path: str | os.PathLike[str], *, suffix: str = ".tck", hidden: bool = True) -> list[Path]:
-        """Write the bundles: a file for each, or one file that has them as groups.
+        """Write the bundles: one file each, or one file with groups.
 
         Parameters
         ----------

@@ -30,12 +30,12 @@ ROOM = 1024  # clusters with memory at first
 
 @dataclass(frozen=True, eq=False)
 class Cluster:
-    """Streamlines that run alike; takes the place of their numbers: ``fiblets[cluster]``.
+    """A cluster of similar streamlines; usable as an index: ``fiblets[cluster]``.
 
     Attributes
     ----------
     number : int
-        Its place among the clusters.
+        Index of the cluster.
     ids : numpy.ndarray
         ``(k,)`` int64, rising.
     centroid : numpy.ndarray
@@ -124,12 +124,12 @@ class Clusters:
         return found
 
     def by_size(self, at_least: int = 1) -> Clusters:
-        """Return the clusters that have so many streamlines, the largest first.
+        """Return the clusters of at least a number of streamlines, the largest first.
 
         Parameters
         ----------
         at_least : int, default: 1
-            Streamlines of smaller ones are in none any more.
+            Smaller clusters are dropped; their streamlines are in no cluster.
         """
         kept = np.flatnonzero(self.counts >= at_least)
         kept = kept[np.argsort(-self.counts[kept], kind="stable")]
@@ -145,7 +145,7 @@ class Clusters:
         name : str, default: "cluster {}"
             Takes a number from 1.
         at_least : int, default: 1
-            Streamlines that a cluster must have.
+            Least number of streamlines of a cluster.
         """
         return {name.format(cluster.number + 1): cluster.ids for cluster in self.by_size(at_least)}
 
@@ -174,19 +174,19 @@ def clusters(
     ids: Any = None,
     progress: Progress = False,
 ) -> Clusters:
-    """Put streamlines that run alike into clusters, in one pass and bounded memory.
+    """Cluster similar streamlines (QuickBundles), in one pass and bounded memory.
 
     Parameters
     ----------
     data : FibletSet or Streamlines
     threshold : float, default: 10.0
-        mm: MDF distance from a cluster's mean line, beyond which a streamline begins another one.
+        mm: a streamline with a larger MDF distance from the mean line of every cluster begins a new cluster.
     n_points : int, default: 12
-        To which streamlines are resampled, at equal arc length.
+        Number of points to which streamlines are resampled, at equal arc length.
     max_clusters : int, optional
-        Beyond so many, a streamline joins the nearest however far it is.
+        At this number of clusters, a streamline joins the nearest one at any distance.
     ids : array_like, optional
-        Streamlines to cluster, in this order; all by default, in their own.
+        Streamlines to cluster, in this order; by default all, in their own order.
     progress : bool or callable
         Show a progress bar; or call this with the name of the step and its finished share, from 0 to 1. What it raises
         ends the work.
@@ -194,7 +194,7 @@ def clusters(
     Returns
     -------
     Clusters
-        In the order in which they were begun; streamlines without points are in none.
+        In the order in which they were begun. Streamlines without points are in no cluster.
 
     Raises
     ------

@@ -51,11 +51,11 @@ def recognise(
     model_threshold : float, default: 5.0
         mm: clusters of the model.
     reduction_threshold : float, default: 15.0
-        mm: clusters of the brain farther than this from the model's are not looked at.
+        mm: clusters of the brain farther than this from the model's clusters are skipped.
     pruning_threshold : float, default: 10.0
-        mm: streamlines farther than this from the aligned model are left out.
+        mm: streamlines farther than this from the aligned model are omitted.
     align : bool, default: True
-        Move the streamlines that are looked at onto the model first.
+        First align the searched streamlines with the model.
     refine : bool, default: True
         Search again, beginning with the result.
     cluster_threshold : float, default: 15.0

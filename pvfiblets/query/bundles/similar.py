@@ -22,18 +22,18 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Similar:
-    """Streamlines that run near some others; takes the place of their numbers: ``fiblets[found]``.
+    """Streamlines similar to given lines; usable as an index: ``fiblets[found]``.
 
     Attributes
     ----------
     ids : numpy.ndarray
         ``(k,)`` int64, the nearest first.
     distances : numpy.ndarray
-        ``(k,)`` float64 mm: MDF distance of each from the nearest of the others.
+        ``(k,)`` float64 mm: MDF distance of each from the nearest given line.
     nearest : numpy.ndarray
-        ``(k,)`` int64: which of the others that is, counted in the order in which they were given.
+        ``(k,)`` int64: index of that given line.
     n_streamlines : int
-        Of the whole set.
+        Number of streamlines of the whole set.
     distance : float
         Requested distance, mm.
     """
@@ -77,7 +77,7 @@ def similar(
     ids: Any = None,
     progress: Progress = False,
 ) -> Similar:
-    """Find streamlines that run near some others from end to end, in either direction.
+    """Find streamlines similar to given ones from end to end, in either direction.
 
     Parameters
     ----------
@@ -87,11 +87,11 @@ def similar(
         The others: numbers of streamlines (or a mask, a slice) of `data`; or lines of their own: ``Streamlines``, an
         array ``(n, 3)`` or a list of them, mm.
     distance : float, default: 10.0
-        mm: MDF distance from the nearest of the others, at most.
+        mm: largest MDF distance from the nearest given line.
     n_points : int, default: 12
-        To which all are resampled, at equal arc length.
+        Number of points to which all lines are resampled, at equal arc length.
     ids : array_like, optional
-        Streamlines to look among; all by default.
+        Streamlines to search; all by default.
     progress : bool or callable
         Show a progress bar; or call this with the name of the step and its finished share, from 0 to 1. What it raises
         ends the work.

@@ -224,7 +224,7 @@ def connectome(
     ends: npt.ArrayLike | None = None,
     progress: Progress = False,
 ) -> Connectome:
-    """Put a number to every pair of parcels.
+    """Compute a connectivity matrix: one number for each pair of parcels.
 
     Parameters
     ----------
@@ -263,7 +263,7 @@ def connectome(
     KeyError
         If there is no array of that name.
     TypeError
-        If the labels are something else.
+        If the labels are not an image.
     ValueError
         If the labels hold no parcel or fractions, the radius is no length or so large that more than a million voxels
         lie within it, there is no such statistic, or weights or numbers do not fit.

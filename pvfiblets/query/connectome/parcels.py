@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def end_parcels(fiblets: FibletSet, atlas: Any, names: Mapping[int, str] | None = None) -> npt.NDArray[np.str_]:
-    """Name the two parcels in which each streamline ends, whichever end comes first.
+    """Return the names of the two parcels in which each streamline ends, in either order.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def end_parcels(fiblets: FibletSet, atlas: Any, names: Mapping[int, str] | None 
     Raises
     ------
     TypeError
-        If the atlas is something else.
+        If the atlas is not an image.
     ValueError
         If it has other than three axes, or fractions, or an affine that flattens space.
     """

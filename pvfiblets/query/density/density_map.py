@@ -20,9 +20,9 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class DensityMap:
-    """Numbers of the voxels of a grid, made by :func:`pvfiblets.density`.
+    """A number for each voxel of a grid, made by :func:`pvfiblets.density`.
 
-    Goes wherever volumes go: ``plotter.add_raycast_volume(found)``, ``actor.scalars = found.to_image()``.
+    It is accepted wherever volumes are: ``plotter.add_raycast_volume(found)``, ``actor.scalars = found.to_image()``.
 
     Attributes
     ----------
@@ -30,9 +30,9 @@ class DensityMap:
         ``(nx, ny, nz)``, of directions ``(nx, ny, nz, 3)``; int32 where streamlines without weights are counted, else
         float64. 0 where no streamline is, never NaN.
     grid : VoxelGrid
-        Where the voxels lie.
+        Position of the voxels.
     name, unit : str
-        What the numbers are.
+        Name and unit of the numbers.
     share_outside : float
         Share of the streamlines' length, or of their end points, that lies outside the grid and is in no voxel, 0 to 1;
         weights do not count.

@@ -53,12 +53,12 @@ def density(
     ends_only: bool = False,
     progress: Progress = False,
 ) -> DensityMap:
-    """Add streamlines up in the voxels of a grid.
+    """Sum streamlines in the voxels of a grid.
 
     Parameters
     ----------
     source : FibletSet, Streamlines, str or PathLike
-        Of a path any format; it is read chunk by chunk.
+        A path may have any format; the file is read in pieces.
     voxel_size : float or array_like, optional
         mm, one or along each axis: the grid lies along the axes of space about all points, with faces at whole
         multiples. Either this or `like`.
@@ -82,7 +82,7 @@ def density(
     Returns
     -------
     DensityMap
-        With ``values``, ``affine``, ``to_image()`` for PyVista and ``save()`` for NIfTI.
+        Has ``values``, ``affine``, ``to_image()`` for PyVista and ``save()`` for NIfTI.
 
     Raises
     ------
@@ -91,15 +91,15 @@ def density(
     KeyError
         If there is no array of that name.
     TypeError
-        If `source` or `like` is something else.
+        If `source` or `like` has another type.
     ValueError
         If neither or both of `voxel_size` and `like` are given, a number makes no sense, an array does not fit, a point
         is not finite, or the grid takes more memory than there is.
 
     Notes
     -----
-    A voxel holds its lower faces and not its upper ones. Where a path runs in a face exactly, its length is that of the
-    voxel above.
+    A voxel contains its lower faces, not its upper ones. The length of a path exactly in a face counts for the voxel
+    above.
     """
     if (voxel_size is None) == (like is None):
         raise ValueError("give either voxel_size= (mm) or like= (an image whose grid is taken)")

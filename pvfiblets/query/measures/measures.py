@@ -115,7 +115,7 @@ class Distance:
         object.__setattr__(self, "per", per)
 
     def at_points(self, points: npt.NDArray[Any]) -> Floats:
-        """Distances of positions ``(n, 3)``: ``(n,)`` float64, mm."""
+        """Return the distances of positions ``(n, 3)``: ``(n,)`` float64, mm."""
         if isinstance(self.what, Region):
             return self.what.distance(points)
         apart: Floats = np.linalg.norm(points - np.array(self.what), axis=1)

@@ -37,17 +37,17 @@ def sample(
     image : image
         A path, ``(array, affine)``, an image of nibabel, or a :class:`pyvista.ImageData`.
     statistic : {'mean', 'median', 'min', 'max'}, optional
-        Of the values along each streamline; by default each point has its value.
+        Statistic of each streamline; by default, the values of all points are returned.
     weights : {'length', 'points'}
-        What counts in a mean: each point by half the length of the segments beside it, as in ``tcksample``, or every
-        point the same. Streamlines without a length have the mean of their points.
+        Weights of points in means: half the length of the adjacent segments, as in ``tcksample``, or equal weights.
+        Points of streamlines without a length have equal weights.
     nearest : bool, default: False
         Take the nearest voxel's value, as labels need it. By default values are linear between the centres of voxels.
 
     Returns
     -------
     numpy.ndarray
-        ``(n_points,)`` float64 in the order of `data`, or ``(n_streamlines,)``. NaN outside of the image and next to
+        ``(n_points,)`` float64 in the order of `data`, or ``(n_streamlines,)``. NaN outside the image and next to
         voxels that are NaN; a statistic is of the points that have a value, and NaN without any.
 
     Raises
@@ -55,13 +55,13 @@ def sample(
     FormatError
         If a file is damaged.
     TypeError
-        If the image is none.
+        If ``image`` is not an image.
     ValueError
         If the image has other than one number per voxel, or there is no such statistic.
 
     Notes
     -----
-    ``tcksample`` has 0 where this has NaN, and counts it in its statistics.
+    ``tcksample`` returns 0 instead of NaN, and includes it in statistics.
 
     Examples
     --------

@@ -56,7 +56,7 @@ class Table(dict[str, npt.NDArray[Any]]):
         return pa.table(dict(self))
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the table to a file; its suffix says in which format.
+        """Write the table to a file, in the format of its suffix.
 
         Parameters
         ----------
@@ -138,12 +138,12 @@ def table(
     ----------
     data : FibletSet or Streamlines
     ids : array_like or slice, optional
-        Streamlines, as for :meth:`.FibletSet.decompress`; all by default. One that is named again has one row.
+        Streamlines, as for :meth:`.FibletSet.decompress`; all by default. A repeated index has one row.
     images : mapping of str to image, optional
         Images whose mean along each streamline is a column ``mean_NAME``: paths, ``(array, affine)``, of nibabel, or
         ImageData.
     weights : {'length', 'points'}
-        What counts in means along streamlines; see :func:`pvfiblets.sample`.
+        Weights of points in means along streamlines; see :func:`pvfiblets.sample`.
 
     Returns
     -------

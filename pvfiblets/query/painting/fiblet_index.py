@@ -93,7 +93,7 @@ class FibletIndex:
 
 
 def index_of(fiblets: FibletSet) -> FibletIndex:
-    """Return a set's spatial index; made when first asked for, and kept with the set.
+    """Return a set's spatial index; the first call makes it and stores it with the set.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ Mask = npt.NDArray[np.bool_]
 
 
 class LiveRegion:
-    """Streamlines of one region of voxels, which changes.
+    """The streamlines that pass a changing region of voxels.
 
     Takes a byte for each fiblet and four for each streamline; nine after the first call of :meth:`flags`.
 
@@ -72,23 +72,23 @@ class LiveRegion:
 
     @property
     def count(self) -> int:
-        """Streamlines that pass the region."""
+        """Number of streamlines that pass the region."""
         return self._passing
 
     def change(self, voxels: Ints, inside: Mask) -> int:
-        """Take voxels in or out.
+        """Add voxels to the region, or remove them.
 
         Parameters
         ----------
         voxels : numpy.ndarray
             ``(n,)`` int64 places in the flat grid, in C order.
         inside : numpy.ndarray
-            ``(n,)`` bool: whether each is in the region from now on.
+            ``(n,)`` bool: True adds the voxel, False removes it.
 
         Returns
         -------
         int
-            Streamlines that pass the region now.
+            Number of streamlines that now pass the region.
         """
         from . import coarse_kernels as coarse
 
@@ -213,13 +213,13 @@ class LiveRegion:
 
 
 class LiveRegions:
-    """The regions that a painter paints, and the streamlines of a set that pass them.
+    """The regions of a painter, and the streamlines of a set that pass them.
 
     Parameters
     ----------
     fiblets : FibletSet
     painter : RegionPainter
-        It is listened to until :meth:`close`.
+        Its strokes update the regions until :meth:`close`.
     """
 
     def __init__(self, fiblets: FibletSet, painter: RegionPainter) -> None:
@@ -228,7 +228,7 @@ class LiveRegions:
         painter.listeners.append(self._stroke)
 
     def close(self) -> None:
-        """Listen no more."""
+        """Stop following the painter's strokes."""
         if self._stroke in self.painter.listeners:
             self.painter.listeners.remove(self._stroke)
 
@@ -237,7 +237,7 @@ class LiveRegions:
             held.change(stroke.voxels, stroke.after == label)
 
     def region(self, name: str) -> LiveRegion:
-        """Return the state of one region; the first call computes all of it."""
+        """Return the state of one region; the first call computes it."""
         label = self.painter.label(name)
         if label not in self._held:
             held = self._held[label] = LiveRegion(self.fiblets, self.painter.grid)
@@ -259,20 +259,20 @@ class LiveRegions:
         in_order: Iterable[str] = (),
         direction: Literal["either", "forward"] = "either",
     ) -> Mask:
-        """Choose streamlines by regions, between their points too.
+        """Return the streamlines that satisfy conditions on regions; segments count, not only points.
 
         Parameters
         ----------
         include, exclude : iterable of str
             Regions that streamlines must pass, and regions that they must miss.
         ends_in : iterable of str
-            Regions; an end must lie in each.
+            Regions that must each contain an end.
         stays_in : str, optional
-            Region that is never left.
+            Region that must contain the whole streamline.
         in_order : iterable of str
-            Regions that are passed one after the other, whatever lies between.
+            Regions that must be passed in this order.
         direction : {'either', 'forward'}
-            Whether the order may be the reverse one, as streamlines are stored in either.
+            Whether the reverse order is accepted; the direction of stored streamlines is arbitrary.
 
         Returns
         -------

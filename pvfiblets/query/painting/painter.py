@@ -58,17 +58,17 @@ class PaintedRegion:
 
 
 class RegionPainter:
-    """Regions on a grid of voxels; a voxel is in one of them at most.
+    """Regions painted on a grid of voxels; a voxel is in at most one region.
 
     Parameters
     ----------
     like : image
-        Whose grid it is: what :func:`pvfiblets.density` takes, such as a path of NIfTI or ``(shape, affine)``.
+        Image that defines the grid, as for :func:`pvfiblets.density`: a path, ``(shape, affine)``, …
 
     Attributes
     ----------
     labels : numpy.ndarray
-        ``(i, j, k)`` uint16, 0 for no region; changed by strokes only.
+        ``(i, j, k)`` uint16, 0 for no region. Only strokes change it.
     listeners : list of callable
         Called with each :class:`Stroke`, undo included.
     """
@@ -84,7 +84,7 @@ class RegionPainter:
     # ------------------------------------------------------------------------------------------------------- regions
 
     def add(self, name: str, color: Any = None) -> PaintedRegion:
-        """Add a region without voxels, by a new `name` and in a colour."""
+        """Add an empty region with a new `name` and a colour."""
         if not name.strip() or name in self.regions:
             raise ValueError(f"a region {name!r} is there already, or is no name; give another one")
         label = max((r.label for r in self.regions.values()), default=0) + 1
@@ -95,7 +95,7 @@ class RegionPainter:
         return made
 
     def rename(self, name: str, new: str) -> None:
-        """Give a region a `new` name, in its place of the list."""
+        """Rename a region; its place in the list stays."""
         self.label(name)
         if not new.strip() or (new in self.regions and new != name):
             raise ValueError(f"a region {new!r} is there already, or is no name; give another one")
@@ -103,7 +103,7 @@ class RegionPainter:
         self.regions[new].name = new
 
     def remove(self, name: str) -> None:
-        """Take a region and its voxels away; that cannot be undone."""
+        """Remove a region and its voxels. This cannot be undone."""
         self.clear(name)
         label = self.regions.pop(name).label
         self._done = [s for s in self._done if not ((s.before == label) | (s.after == label)).any()]
@@ -120,7 +120,7 @@ class RegionPainter:
         return np.asarray(self.labels == self.label(name))
 
     def region(self, name: str) -> Labels:
-        """Return a region as it is now, for ``regions.passes`` and the like; a ValueError if it has no voxel."""
+        """Return a copy of a region, for ``regions.passes`` and others; ValueError if it has no voxel."""
         return Labels(self.mask(name), self.grid.affine)
 
     # ------------------------------------------------------------------------------------------------------- brushes
@@ -133,11 +133,11 @@ class RegionPainter:
         name : str or None
             Region; None erases.
         path : array_like
-            ``(3,)`` or ``(n, 3)`` mm: where the brush is, or the way along which it is drawn.
+            ``(3,)`` or ``(n, 3)`` mm: position of the brush, or the polyline along which it moves.
         radius : float
-            mm: voxels with centres within it of the path are painted, and the voxels of its corners.
+            mm: voxels with centres within this distance of the path are painted, and the voxels of its corners.
         plane : {0, 1, 2}, optional
-            A brush of two dimensions: only the voxels of one slice, that of the path's first position along this axis.
+            Paint in two dimensions: only in the slice across this axis at the path's first position.
 
         Returns
         -------
@@ -156,7 +156,7 @@ class RegionPainter:
         return self._put(name, np.unique(self._flat(at)))
 
     def erase(self, path: npt.ArrayLike, radius: float, *, plane: int | None = None) -> Stroke:
-        """Take voxels out of their regions; parameters as for :meth:`paint`."""
+        """Remove voxels from their regions; parameters as for :meth:`paint`."""
         return self.paint(None, path, radius, plane=plane)
 
     def sphere(self, name: str | None, center: npt.ArrayLike, radius: float) -> Stroke:
@@ -192,7 +192,7 @@ class RegionPainter:
         return self._put(name, np.sort(self._flat(at[self._within(at)])))
 
     def fill(self, name: str | None, seed: npt.ArrayLike, *, plane: int | None = None) -> Stroke:
-        """Paint all voxels that hang together with a position's and are of its region, or of none as it is.
+        """Paint the connected voxels around a position that have its label (a region, or none).
 
         Parameters
         ----------
@@ -209,13 +209,13 @@ class RegionPainter:
         self, name: str | None, seed: npt.ArrayLike, image: npt.ArrayLike, low: float, high: float,
         *, radius: float | None = None, plane: int | None = None,
     ) -> Stroke:  # fmt: skip
-        """Paint the voxels that hang together with a position's by values of an image in a range.
+        """Paint the connected voxels around a position whose image values are in a range.
 
         Parameters
         ----------
         name : str or None
         seed : array_like
-            ``(3,)`` mm; nothing is painted if its own value is out of range.
+            ``(3,)`` mm; nothing is painted if its value is out of range.
         image : array_like
             ``(i, j, k)`` numbers on this grid.
         low, high : float
@@ -241,20 +241,20 @@ class RegionPainter:
         return self._put(name, self._grown(at, open_, plane))
 
     def set_voxels(self, name: str, voxels: npt.ArrayLike) -> Stroke:
-        """Give a region some `voxels` more: ``(n,)`` places in the flat grid, in C order."""
+        """Add `voxels` to a region: ``(n,)`` indices in the flat grid, in C order."""
         places = np.asarray(voxels)
         if places.dtype.kind not in "iu" or places.ndim != 1 or not self._holds(places):
             raise ValueError(f"voxels are {places.dtype} of shape {places.shape}; give whole numbers (n,) in the grid")
         return self._put(name, np.unique(places.astype(np.int64)))
 
     def clear(self, name: str) -> Stroke:
-        """Take all voxels out of a region."""
+        """Remove all voxels of a region."""
         return self._put(None, np.flatnonzero(self.labels.ravel() == self.label(name)))
 
     # ---------------------------------------------------------------------------------------------------------- undo
 
     def undo(self) -> Stroke | None:
-        """Take the last stroke back; None if there is none."""
+        """Undo the last stroke, and return the reverse stroke; None if there is none."""
         if not self._done:
             return None
         last = self._done.pop()
@@ -262,7 +262,7 @@ class RegionPainter:
         return self.apply(Stroke(last.voxels, last.after, last.before))
 
     def redo(self) -> Stroke | None:
-        """Do the stroke again that was undone last; None if there is none."""
+        """Redo the last undone stroke, and return it; None if there is none."""
         if not self._undone:
             return None
         last = self._undone.pop()

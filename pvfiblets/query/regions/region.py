@@ -128,7 +128,7 @@ class Region:
         Returns
         -------
         numpy.ndarray
-            ``(n,)`` float64 mm; NaN where a coordinate is not finite. How exact it is, each shape says.
+            ``(n,)`` float64 mm; NaN where a coordinate is not finite. The shape's :meth:`apart` states the accuracy.
 
         Raises
         ------

@@ -167,7 +167,7 @@ class Surface(Shape):
         return found
 
     def signed_distance(self, points: npt.ArrayLike) -> Array:
-        """The same, negative outside."""
+        """Return signed distances: as :meth:`distance`, negative outside."""
         return np.where(self.contains(points), 1.0, -1.0) * self.distance(points)
 
     def _unsigned(self, places: Array) -> Array:

@@ -47,11 +47,11 @@ class Predicate:
         raise TypeError("a condition is neither true nor false; join conditions with &, | and ~, not with and, or, not")
 
     def conditions(self) -> Iterator[Condition]:
-        """Yield its parts."""
+        """Yield the conditions of the expression."""
         raise NotImplementedError
 
     def holds(self, flags: Callable[[Condition], Flags]) -> Mask:
-        """Return where it holds, ``(n_streamlines,)`` bool, from the flags of the conditions' regions."""
+        """Return which streamlines satisfy it, ``(n_streamlines,)`` bool, from the flags of its regions."""
         raise NotImplementedError
 
     def choose(self, fiblets: FibletSet | Streamlines, *, flags: FlagsOf | None = None) -> Mask:
@@ -116,7 +116,7 @@ class Listed(Predicate):
 
 
 def passes(region: Region, *, sampling: Sampling = "lines") -> Predicate:
-    """Streamlines that pass through the region: some point, or some place between two points, lies in it.
+    """Return the condition that a streamline passes through the region, at a point or between two points.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def passes(region: Region, *, sampling: Sampling = "lines") -> Predicate:
     Raises
     ------
     TypeError
-        If the region is none.
+        If the region is not a region.
     ValueError
         If the sampling is neither.
 
@@ -142,12 +142,12 @@ def passes(region: Region, *, sampling: Sampling = "lines") -> Predicate:
 
 
 def stays_in(region: Region, *, sampling: Sampling = "lines") -> Predicate:
-    """Streamlines entirely in the region; parameters and errors as for :func:`passes`."""
+    """Return the condition that a streamline lies entirely in the region; parameters as for :func:`passes`."""
     return Condition(_region(region, "stays_in"), ALL, sampling=check_sampling(sampling))
 
 
 def ends_in(region: Region, which: Ends = "any") -> Predicate:
-    """Streamlines whose first or last points lie in the region.
+    """Return the condition that a streamline's first or last point lies in the region.
 
     Parameters
     ----------
@@ -159,9 +159,9 @@ def ends_in(region: Region, which: Ends = "any") -> Predicate:
     Raises
     ------
     TypeError
-        If the region is none.
+        If the region is not a region.
     ValueError
-        If there is no such choice of ends.
+        If ``which`` is unknown.
     """
     if which not in get_args(Ends):
         raise ValueError(f"which is {which!r}; give one of {', '.join(map(repr, get_args(Ends)))}")
