@@ -58,6 +58,7 @@ from pvfiblets.mappers.vtk_pipeline.actor_link import ActorLink
 from pvfiblets.mappers.vtk_pipeline.connection import Connection
 from pvfiblets.mappers.vtk_pipeline.proxy import proxy_polydata
 from pvfiblets.mappers.vtk_pipeline.readable_lines import LineReading, readable_mapper
+from pvfiblets.mappers.vtk_pipeline.vtk_overrides import override
 
 if TYPE_CHECKING:
     import moderngl
@@ -111,7 +112,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         self._factory = renderer_factory
         self._options = options
         self._made_with = made_with  # further keywords of the factory
-        self._link = ActorLink(self)
+        self._link = ActorLink(self, override)  # VTK may have loaded more exporters since
         self._connection = Connection(self)
         self.reading = LineReading(self, self._connection, self._link)
         self._active = ActiveRenderer()

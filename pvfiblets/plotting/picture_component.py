@@ -22,7 +22,7 @@ from pvfiblets.mappers.picture.antialias_refinement import Refinement
 from pvfiblets.mappers.picture.picture import DepthOfField, Picture
 from pvfiblets.plotting.antialias_pacing import Pacer
 from pvfiblets.plotting.components import register
-from pvfiblets.plotting.settings.places import OWN, Place
+from pvfiblets.plotting.settings.places import OWN, Place, Stored
 from pvfiblets.plotting.settings.settings import Setting, number
 
 TONE = ("operator", "exposure", "white")
@@ -36,10 +36,10 @@ TICK = 15  # ms between pictures while the focus is on its way
 class _ToneMapping(Place):
     """A field of the active renderer's tone, which checks it."""
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         return getattr(actor._picture().tone, setting.field)  # noqa: SLF001 - of the class that it is part of
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         actor._set_tone(**{setting.field: value})  # noqa: SLF001
 
 

@@ -9,6 +9,7 @@ has the mapper, the property and the shader property.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from typing import Any, cast
 
 from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
@@ -16,7 +17,6 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 from pvfiblets.mappers.effects import resolve
 from pvfiblets.mappers.frames.scene import actors_in, items_of
 from pvfiblets.mappers.frames.windows import weak
-from pvfiblets.mappers.vtk_pipeline.vtk_overrides import override
 
 VTK_SURFACE = 2
 
@@ -33,8 +33,9 @@ class ActorLink:
     found = False  # whether the actor was given the mapper by `SetMapper`, not by `attach`
     installed: tuple[resolve.Replacement, ...] = ()
 
-    def __init__(self, mapper: vtkMapper) -> None:
+    def __init__(self, mapper: vtkMapper, before_attach: Callable[[], None]) -> None:
         self._mapper = weak(mapper)
+        self._before_attach = before_attach
         self._features: frozenset[str] = frozenset()
         self._translucent = False
         self._forget()
@@ -58,7 +59,7 @@ class ActorLink:
     def attach(self, actor: vtkActor) -> None:
         """Make the mapper that of an actor, and add the shader pieces to it."""
         self.detach()
-        override()  # of modules of VTK's that have been loaded since
+        self._before_attach()
         self._actor = weak(actor)
         actor.SetMapper(cast("Any", self._mapper.Get()))
         self._tags = actor.AddObserver("ModifiedEvent", self._actor_changed), 0

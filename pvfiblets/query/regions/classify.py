@@ -36,6 +36,7 @@ import numpy.typing as npt
 from ...codec.decompress import fixed
 from ...codec.jit import kernel, parallel_kernel
 from .placement import positions
+from .region import largest_stretch, pack_rows
 from .shape_kernels import unit
 
 if TYPE_CHECKING:
@@ -65,19 +66,6 @@ class Packed:
         return self.ops, self.rows, self.grids, self.values
 
 
-def pack_rows(region: Region) -> tuple[npt.NDArray[np.int32], Array]:
-    """Return ``ops`` and ``rows`` as if no shape had a field."""
-    rows = np.zeros((len(region.leaves), 20))
-    for row, leaf in zip(rows, region.leaves, strict=True):
-        row[0] = leaf.kind
-        row[1:10] = leaf.linear.ravel()
-        row[10:13] = leaf.centre
-        row[13] = _largest(leaf.linear)
-        row[14:17] = np.linalg.norm(leaf.linear, axis=1) * (1.0 + 1e-12)
-        row[17] = -1.0
-    return np.array(region.program, np.int32), rows
-
-
 @lru_cache(maxsize=4)
 def pack(region: Region) -> Packed:
     """Return a region as arrays, for kernels; the last few are kept. Makes the fields that are not there yet."""
@@ -94,16 +82,12 @@ def pack(region: Region) -> Packed:
             sizes = field.values.shape[::-1]
             grids.append([*field.origin, *field.spacing, *field.steps, *sizes, start, 0.0, 0.0, 0.0])
             start += field.values.size
-        row[13] = _largest(leaf.linear * (field.steps / field.spacing)[:, None])
+        row[13] = largest_stretch(leaf.linear * (field.steps / field.spacing)[:, None])
         row[17] = list(fields).index(id(field))
         row[18] = float(field.whole)
     values = [field.values.ravel() for field in fields.values()]
     flat = values[0] if len(values) == 1 else np.concatenate([*values, np.zeros(1, np.float32)])
     return Packed(ops, rows, np.array(grids).reshape(-1, 16), fixed(flat), tuple(fields.values()))
-
-
-def _largest(linear: Array) -> float:
-    return float(np.linalg.svd(linear, compute_uv=False)[0]) * (1.0 + 1e-12)
 
 
 def classify(region: Region, centres: npt.ArrayLike, radii: npt.ArrayLike) -> npt.NDArray[np.int8]:
