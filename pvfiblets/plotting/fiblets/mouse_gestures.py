@@ -54,7 +54,6 @@ class Pointing:
         self._pressed: tuple[int, int] | None = None
         self._corners: list[tuple[int, int]] = []
         self._outline: Outline | None = None
-        self._buttons = 0
         self.drawing = bool(start) and mode != "click"
         name = button.capitalize()
         if mode == "click":

@@ -324,10 +324,6 @@ class Scene:
         self.show(head.id, False)
         return [tracts, self.layer(head.id)]
 
-    def add_demo(self, streamlines: int = 5000, voxels: int = 64) -> list[Layer]:
-        """Make tracts and a head up, and add them."""
-        return self.add_loaded_demo(self.load_demo(streamlines, voxels))
-
     def remove(self, layer_id: str) -> None:
         """Take a layer away."""
         layer = self.layer(layer_id)

@@ -77,7 +77,6 @@ class PictureStream:
         self.still_quality = still
         self.frames = 0  # drawn
         self.sent = 0  # pictures
-        self.sent_bytes = 0
         self.times: deque[float] = deque(maxlen=30)  # seconds that each of the last frames took to draw
         self._plotter = plotter
         self._pending = pending  # the number of messages that the network has not taken yet
@@ -468,4 +467,3 @@ class PictureStream:
         }  # fmt: skip
         self._streamer.push_content(self.area_name, meta, content)
         self.sent += 1
-        self.sent_bytes += len(content)
