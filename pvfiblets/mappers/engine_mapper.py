@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 import numpy as np
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_OBJECT
-from vtkmodules.vtkCommonCore import vtkOutputWindow
+from vtkmodules.vtkCommonCore import vtkCommand, vtkOutputWindow
 from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 
@@ -63,6 +63,7 @@ from pvfiblets.mappers.vtk_pipeline.vtk_overrides import override
 if TYPE_CHECKING:
     import moderngl
     from vtkmodules.vtkCommonDataModel import vtkPolyData
+    from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
     from pvfiblets.mappers.line_data import LineData
     from pvfiblets.mappers.vtk_pipeline.vtk_input import VtkInput
@@ -472,7 +473,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         found = self._user_input()
         return super().GetInputConnection(port, index) if found is None else found.GetInputConnection(port, index)
 
-    def GetInputAlgorithm(self, port: int = 0, index: int = 0) -> Any:  # noqa: N802 - VTK's name
+    def GetInputAlgorithm(self, port: int = 0, index: int = 0, *_ports: Any) -> Any:  # noqa: N802 - VTK's name
         """Return the algorithm that was connected."""
         connection = self.GetInputConnection(port, index)
         return None if connection is None else connection.GetProducer()
@@ -626,7 +627,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     # Memory
 
-    def release(self, window: Any = None) -> None:
+    def release(self, window: vtkRenderWindow | None = None) -> None:
         """Delete the GL objects of one window, or of all; twice is harmless."""
         # Call it before a window is closed, to have the memory back at once.
         address = None if window is None else window.GetAddressAsString("")
@@ -711,4 +712,8 @@ def _connections_changed(mapper: EngineMapper[Any], _event: str) -> None:
     mapper._connection.changed()  # noqa: SLF001
 
 
-_OBSERVERS = {"UpdateShaderEvent": _update_shader, "StartEvent": _begin, "ModifiedEvent": _connections_changed}
+_OBSERVERS = {
+    vtkCommand.UpdateShaderEvent: _update_shader,
+    vtkCommand.StartEvent: _begin,
+    vtkCommand.ModifiedEvent: _connections_changed,
+}

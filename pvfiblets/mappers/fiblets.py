@@ -258,6 +258,7 @@ class FibletMapper(FilteredMapper[EngineOptions]):
 
     def _sampled(self, renderer: vtkRenderer) -> tuple[Frame, View, Style]:
         """Return what the engine is to draw for samples of a renderer's picture."""
+        assert self.actor is not None  # a renderer draws it
         frame = frame_of(renderer, self.actor, (*renderer.GetOrigin(), *renderer.GetSize()))
         return frame, *self._wanted(renderer, frame, True)
 

@@ -236,8 +236,8 @@ class VolumeMapper(CutMapper[Options]):
         if self.coarser is not None and in_motion(renderer):
             casting = self.coarser.applied_to(casting)
         shone = self.shaded if casting.mode == "composite" else casting.layered and self.lit_surfaces
-        lit = shone and self.actor is not None
-        return VolumeStyle(casting=casting, shading=shading_of(renderer, self.actor) if lit else None)
+        lit = shading_of(renderer, self.actor) if shone and self.actor is not None else None
+        return VolumeStyle(casting=casting, shading=lit)
 
 
 def _plain(casting: RaycastOptions) -> Colouring:

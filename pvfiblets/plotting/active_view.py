@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
 
 @contextmanager
-def active_view(plotter: Any, renderer: Any) -> Iterator[None]:
+def active_view(plotter: Any, renderer: vtkRenderer) -> Iterator[None]:
     """Make one of a plotter's renderers the active one for a while."""
     renderers = plotter.renderers
     own, before = (

@@ -9,7 +9,7 @@ import weakref
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
 
@@ -24,6 +24,9 @@ from pvfiblets.plotting.antialias_pacing import Pacer
 from pvfiblets.plotting.components import register
 from pvfiblets.plotting.settings.places import OWN, Place, Stored
 from pvfiblets.plotting.settings.settings import Setting, number
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
 TONE = ("operator", "exposure", "white")
 """Settings of :attr:`PictureComponent.tone`; the other changes of colours are attributes of their own."""
@@ -220,7 +223,7 @@ class PictureComponent:
 
     # Smooth edges
 
-    def follow(self, renderer: Any) -> None:
+    def follow(self, renderer: vtkRenderer) -> None:
         """Update whether a renderer shows an object of this package."""
         if renderer.GetAddressAsString("") not in partly_shown:
             self._smooth_as_set(renderer)
@@ -241,7 +244,7 @@ class PictureComponent:
         self._seconds[renderer.GetAddressAsString("")] = value
         self._smooth_as_set(renderer)
 
-    def _smooth_as_set(self, renderer: Any) -> None:
+    def _smooth_as_set(self, renderer: vtkRenderer) -> None:
         """Apply the antialiasing of a renderer; by default, if it shows an object of this package."""
         address = renderer.GetAddressAsString("")
         value = self._antialias.get(address)
@@ -296,7 +299,7 @@ class PictureComponent:
 
     # Life cycle
 
-    def _picture(self, renderer: Any = None) -> Picture:
+    def _picture(self, renderer: vtkRenderer | None = None) -> Picture:
         """Return a renderer's, by default the active one's."""
         renderer = self._plotter.renderer if renderer is None else renderer
         address = renderer.GetAddressAsString("")

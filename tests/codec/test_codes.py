@@ -237,7 +237,7 @@ def test_many_pages(monkeypatch):
     points = np.cumsum(rng.normal(size=(n, 2, 3)), axis=1) + rng.uniform(-50, 50, (n, 1, 3))
     lines = Streamlines(points.reshape(-1, 3), np.arange(0, 2 * n + 1, 2))
     whole = pf.compress(lines)
-    monkeypatch.setattr(pf.codec.compress.split_chunks, "__defaults__", (12_345,))
+    monkeypatch.setattr(pf.codec.encoding.compress.split_chunks, "__defaults__", (12_345,))
     pieces = pf.compress(lines)
     assert whole.pages.shape == (4, 3)
     for name in ("anchors", "decoding", "reach", "codes", "ends", "pages"):

@@ -10,13 +10,17 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
+from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
 from pvfiblets.mappers.effects import resolve
 from pvfiblets.mappers.frames.scene import actors_in, items_of
 from pvfiblets.mappers.frames.windows import weak
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
 VTK_SURFACE = 2
 
@@ -62,7 +66,7 @@ class ActorLink:
         self._before_attach()
         self._actor = weak(actor)
         actor.SetMapper(cast("Any", self._mapper.Get()))
-        self._tags = actor.AddObserver("ModifiedEvent", self._actor_changed), 0
+        self._tags = actor.AddObserver(vtkCommand.ModifiedEvent, self._actor_changed), 0
         self._watch_property(actor)
         self.install()
 
@@ -108,7 +112,7 @@ class ActorLink:
         for name in sorted(new):
             warnings.warn(f"actor.{name} changes nothing here: {_UNUSED[name][1]}", UserWarning, stacklevel=2)
 
-    def check_alone(self, renderer: Any) -> None:
+    def check_alone(self, renderer: vtkRenderer) -> None:
         """Raise if actors share the mapper, as copies of an actor do: VTK does not say which one it draws."""
         props = renderer.GetViewProps()
         seen = renderer.GetAddressAsString(""), props.GetMTime()
@@ -149,7 +153,7 @@ class ActorLink:
             self._property.Get().RemoveObserver(self._tags[1])
         _keep_surface(actor.GetProperty(), "")
         self._property = weak(actor.GetProperty())
-        self._tags = self._tags[0], actor.GetProperty().AddObserver("ModifiedEvent", _keep_surface)
+        self._tags = self._tags[0], actor.GetProperty().AddObserver(vtkCommand.ModifiedEvent, _keep_surface)
 
     def modified(self) -> None:
         """Notify observers that render on demand; the mapper's own time would make VTK rebuild its shaders."""

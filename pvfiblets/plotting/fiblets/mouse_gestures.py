@@ -11,12 +11,15 @@ from __future__ import annotations
 import math
 import weakref
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 
 from pvfiblets.plotting.fiblets.pick_overlay import Outline
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderWindowInteractor
 
 PRIORITY = 0.25  # widgets have 0.5, styles 0
 STILL = 3.0  # pixels: a mouse that moved less between press and release has clicked
@@ -71,7 +74,7 @@ class Pointing:
         """Call a handler; if it returns True, the event goes no further."""
         reference = weakref.WeakMethod(handler)
 
-        def call(interactor: Any, name: str) -> None:
+        def call(interactor: vtkRenderWindowInteractor, name: str) -> None:
             alive = reference()
             if alive is not None and alive():
                 interactor.GetCommand(self_tags[name]).SetAbortFlag(1)

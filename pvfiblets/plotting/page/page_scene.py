@@ -20,7 +20,7 @@ from pvfiblets.mappers.effects.highlight import Highlight
 from pvfiblets.mappers.effects.line_light import LineLight
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.fiblets import FibletMapper
-from pvfiblets.mappers.frames.scene import to_array, world_planes
+from pvfiblets.mappers.frames.scene import items_of, to_array, world_planes
 from pvfiblets.page.scene import CameraPlace, Light, PageScene, encoded, fiblet_layer
 from pvfiblets.plotting.page.cuts import cuts_of
 from pvfiblets.plotting.page.surfaces import add_image, add_surface, reflects_of
@@ -28,6 +28,8 @@ from pvfiblets.plotting.slices.plane import prepare
 
 if TYPE_CHECKING:
     from os import PathLike
+
+    from vtkmodules.vtkRenderingCore import vtkCamera, vtkRenderer
 
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.mappers.colouring import Colouring
@@ -90,7 +92,7 @@ def add_all(
     return list(dict.fromkeys(unable)), names
 
 
-def _actors(renderer: Any) -> Iterator[tuple[str, Any]]:
+def _actors(renderer: vtkRenderer) -> Iterator[tuple[str, Any]]:
     for name, actor in renderer.actors.items():
         if actor.GetVisibility():
             yield name, actor
@@ -285,24 +287,23 @@ def _values(
     return bare, said, ()
 
 
-def _background(renderer: Any) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    bottom = tuple(renderer.GetBackground())
-    top = tuple(renderer.GetBackground2()) if renderer.GetGradientBackground() else bottom
+def _background(renderer: vtkRenderer) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    bottom = renderer.GetBackground()
+    top = renderer.GetBackground2() if renderer.GetGradientBackground() else bottom
     return bottom, top
 
 
-def camera_place(camera: Any) -> CameraPlace:
+def camera_place(camera: vtkCamera) -> CameraPlace:
     """Return where a vtkCamera stands."""
     return CameraPlace(
-        tuple(camera.GetPosition()), tuple(camera.GetFocalPoint()), tuple(camera.GetViewUp()), camera.GetViewAngle(),
+        camera.GetPosition(), camera.GetFocalPoint(), camera.GetViewUp(), camera.GetViewAngle(),
         bool(camera.GetParallelProjection()), camera.GetParallelScale(),
     )  # fmt: skip
 
 
-def _lights(renderer: Any) -> Iterator[Light]:
+def _lights(renderer: vtkRenderer) -> Iterator[Light]:
     """Yield the lights that are on; camera lights in camera coordinates."""
-    lights = renderer.GetLights()
-    for light in (lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems())):
+    for light in items_of(renderer.GetLights()):
         intensity = light.GetIntensity()
         if not light.GetSwitch() or intensity <= 0.0:
             continue

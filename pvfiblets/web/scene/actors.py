@@ -16,6 +16,8 @@ from pvfiblets.web.session.document import LINES, Clip, Filters, Ids, Layer, Sou
 from pvfiblets.web.session.shapes import make_predicate, make_region, planes_of
 
 if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
     from pvfiblets.web.scene.files.loading import Loaded
     from pvfiblets.web.session.shapes import Load
 
@@ -66,7 +68,7 @@ def remove_actor(plotter: Any, actor: Any) -> None:
     plotter.remove_actor(actor, reset_camera=False, render=False)
 
 
-def put_in_order(renderer: Any, actors: Sequence[Any]) -> None:
+def put_in_order(renderer: vtkRenderer, actors: Sequence[Any]) -> None:
     """Order the actors of a renderer, whenever each was added: of things in one place the first shows."""
     props = renderer.GetViewProps()
     places = [props.IsItemPresent(actor) for actor in actors]  # from 1 on

@@ -12,11 +12,14 @@ import logging
 import re
 import zlib
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets import page
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.view.sent_scene import LARGEST, MOST, SentScene, SentScenes
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkCamera
 
 logger = logging.getLogger("pvfiblets.web")
 
@@ -61,7 +64,7 @@ class BrowserDrawing(Actions):
         self._camera = None  # a page that was reloaded knows of none
         self._app.stream.request()
 
-    def moved(self, camera: Any, origin: Any, rests: Any, turn: Any) -> None:
+    def moved(self, camera: vtkCamera, origin: Any, rests: Any, turn: Any) -> None:
         """Put the camera where a browser has moved it, unless it was moved before by another that this one lacks."""
         app = self._app
         mover = str(origin)[:40]

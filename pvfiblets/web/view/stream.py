@@ -22,7 +22,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,9 @@ from pvfiblets.web.server.rpc_allowlist import MOST_PIXELS
 from pvfiblets.web.view.encoding import encode
 from pvfiblets.web.view.pace import LEVELS, Level, Pace
 from pvfiblets.web.view.touch import Fingers
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
 logger = logging.getLogger("pvfiblets.web")
 
@@ -408,7 +411,7 @@ class PictureStream:
                 *(int(k * now / then) for k, now, then in zip(at, self._pixels, before, strict=True))
             )
 
-    async def _frame_without(self, renderer: Any) -> None:
+    async def _frame_without(self, renderer: vtkRenderer) -> None:
         """Draw and send all other views; later picks need a new frame."""
         coarse = self.moving
         renderer.SetDraw(False)
