@@ -168,6 +168,7 @@ OWNERS = {
     "pvfiblets.plotting.fiblets.selection",
     "pvfiblets.plotting.slices.stack",
     "pvfiblets.plotting.slices.workspace",
+    "pvfiblets.web.app",
     "pvfiblets.web.scene.scene",
 }
 """Their classes are made of parts, which name them in annotations."""

@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import pyvista as pv
+
     from pvfiblets.web.session.shapes import Load
 
 KINDS = ("lines", "volumes", "meshes")  # what `--clip` cuts, by `of=`
@@ -190,7 +192,7 @@ def _cut(actor: Any, region: Any, inside: bool) -> None:
     )
 
 
-def open_session(plotter: Any, path: str) -> Any:
+def open_session(plotter: pv.BasePlotter, path: str) -> Any:
     """Draw a session, as ``pvfiblets serve`` saves it, and look at it from where it says; return its scene."""
     from pvfiblets.web.scene.scene import Scene
     from pvfiblets.web.session.files import load

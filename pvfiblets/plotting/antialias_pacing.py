@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from vtkmodules.vtkCommonCore import vtkCommand
 
 if TYPE_CHECKING:
+    import pyvista as pv
     from vtkmodules.vtkRenderingCore import vtkRenderWindowInteractor
 
 __all__ = ["REST", "Pacer"]
@@ -31,7 +32,9 @@ class Pacer:
     pictures.
     """
 
-    def __init__(self, plotter: Any, step: Callable[[], bool], wanted: Callable[[], tuple[bool, int]]) -> None:
+    def __init__(
+        self, plotter: pv.BasePlotter, step: Callable[[], bool], wanted: Callable[[], tuple[bool, int]]
+    ) -> None:
         self._plotter = weakref.proxy(plotter)
         # says whether one is, and how many have been taken
         self._step, self._wanted = step, wanted  # draws a sample; says whether another one is wanted

@@ -34,7 +34,7 @@ class Pointing:
 
     def __init__(
         self,
-        plotter: Any,  # whose events
+        plotter: pv.BasePlotter,  # whose events
         *,
         mode: str,  # what the user draws
         button: str,  # that clicks; areas are drawn with the left one

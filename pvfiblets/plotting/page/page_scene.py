@@ -41,7 +41,7 @@ MOST_FIBLET_LAYERS = 15
 
 
 def export_page(
-    plotter: Any, path: str | PathLike[str], *, title: str | None = None, largest_file: int | None = None
+    plotter: pv.BasePlotter, path: str | PathLike[str], *, title: str | None = None, largest_file: int | None = None
 ) -> list[Path]:
     """Write what a plotter's active renderer shows as a page; see `FibletsComponent.export_page`."""
     from pvfiblets.page.writing import LARGEST_FILE, write_page
@@ -50,12 +50,12 @@ def export_page(
     return write_page(scene, path, largest_file=LARGEST_FILE if largest_file is None else largest_file)
 
 
-def page_of(plotter: Any, *, title: str | None = None) -> PageScene:
+def page_of(plotter: pv.BasePlotter, *, title: str | None = None) -> PageScene:
     """Return what a plotter's active renderer shows."""
     return page_and_actors(plotter, title=title)[0]
 
 
-def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScene, list[str]]:
+def page_and_actors(plotter: pv.BasePlotter, *, title: str | None = None) -> tuple[PageScene, list[str]]:
     """Return what `page_of` does, and the names of the actors that the layers are."""
     renderer = plotter.renderer
     said = title or getattr(plotter, "title", None) or "Streamlines"
@@ -70,7 +70,7 @@ def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScen
 
 
 def add_all(
-    scene: PageScene, plotter: Any, *, controls: bool = True, besides: Collection[str] = ()
+    scene: PageScene, plotter: pv.BasePlotter, *, controls: bool = True, besides: Collection[str] = ()
 ) -> tuple[list[str], list[str]]:
     """Fill a page from a plotter's active renderer, without its camera."""
     renderer = plotter.renderer
@@ -98,7 +98,7 @@ def _actors(renderer: vtkRenderer) -> Iterator[tuple[str, Any]]:
             yield name, actor
 
 
-def _as_shown(plotter: Any, actor: Any, bars: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def _as_shown(plotter: pv.BasePlotter, actor: Any, bars: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return an actor's colour bars with the title that the plotter's has, and none if that shows none."""
     shown = plotter.scalar_bars
     titles = [title for title, mappers in shown._scalar_bar_mappers.items()  # noqa: SLF001 - it has no other list

@@ -35,7 +35,7 @@ _TYPED = re.compile(r"^\s*(v?)\s*([^v]*)$")
 class PaneEvents:
     """Gestures of one workspace."""
 
-    def __init__(self, workspace: Workspace, plotter: Any) -> None:
+    def __init__(self, workspace: Workspace, plotter: pv.BasePlotter) -> None:
         self._workspace = weakref.proxy(workspace)  # not kept alive
         self._interactor = plotter.iren.interactor
         self._dragging: tuple[str, Pane, tuple[int, int]] | None = None

@@ -56,7 +56,7 @@ class Workspace:
 
     def __init__(
         self,
-        plotter: Any,
+        plotter: pv.BasePlotter,
         slices: SliceStack,
         renderers: Mapping[str, Any],
         *,

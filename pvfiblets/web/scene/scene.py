@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.formats.attachments import name_of
 from pvfiblets.support.vtk_space import Space
@@ -55,6 +55,9 @@ from pvfiblets.web.session.document import (
 from pvfiblets.web.session.store import Store
 from pvfiblets.web.values import colour, text
 
+if TYPE_CHECKING:
+    import pyvista as pv
+
 MOST_LAYERS = 64
 MOST_VALUES = 64  # files of values of one layer
 LONGEST_NAME = 1024  # largest number of characters of a layer's name
@@ -86,7 +89,7 @@ class Scene:
     """
 
     def __init__(
-        self, plotter: Any, root: Path | None = None, *, allowed: Any = (), look: str | None = None,
+        self, plotter: pv.BasePlotter, root: Path | None = None, *, allowed: Any = (), look: str | None = None,
         cluster: str | None = None,  # whose workers draw fiblets, as of `plotter.add_fiblets`
     ) -> None:  # fmt: skip
         self.plotter = plotter  # drawn into; it is the scene's own

@@ -19,7 +19,9 @@ from pvfiblets.web.actions import Actions
 from pvfiblets.web.view.sent_scene import LARGEST, MOST, SentScene, SentScenes
 
 if TYPE_CHECKING:
-    from vtkmodules.vtkRenderingCore import vtkCamera
+    from collections.abc import Mapping
+
+    from pvfiblets.web.app import Explorer
 
 logger = logging.getLogger("pvfiblets.web")
 
@@ -34,7 +36,7 @@ PACKED = 1  # how hard zlib tries on pixels: a third of a slice's bytes are left
 class BrowserDrawing(Actions):
     """Client-side rendering of an application: whether the browser renders, and its messages."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         options = app.options
         alone = not options.shared and options.cluster is None
@@ -64,7 +66,7 @@ class BrowserDrawing(Actions):
         self._camera = None  # a page that was reloaded knows of none
         self._app.stream.request()
 
-    def moved(self, camera: vtkCamera, origin: Any, rests: Any, turn: Any) -> None:
+    def moved(self, camera: Mapping[str, Any], origin: Any, rests: Any, turn: Any) -> None:
         """Put the camera where a browser has moved it, unless it was moved before by another that this one lacks."""
         app = self._app
         mover = str(origin)[:40]

@@ -36,6 +36,7 @@ from pvfiblets.web.view.pace import LEVELS, Level, Pace
 from pvfiblets.web.view.touch import Fingers
 
 if TYPE_CHECKING:
+    import pyvista as pv
     from vtkmodules.vtkRenderingCore import vtkRenderer
 
 logger = logging.getLogger("pvfiblets.web")
@@ -57,7 +58,7 @@ class PictureStream:
 
     def __init__(
         self,
-        plotter: Any,  # off screen, with an interactor
+        plotter: pv.BasePlotter,  # off screen, with an interactor
         name: str,  # the area's name
         *,
         codec: str = "jpeg",  # how pictures travel. PNG has no quality: it is the same at rest and in motion.

@@ -34,7 +34,7 @@ class _Pair(NamedTuple):
 class Fingers:
     """Two fingers that steer a plotter's camera."""
 
-    def __init__(self, plotter: Any, pane_at: Callable[[float, float], Any] = lambda _x, _y: None) -> None:
+    def __init__(self, plotter: pv.BasePlotter, pane_at: Callable[[float, float], Any] = lambda _x, _y: None) -> None:
         self._plotter = plotter
         self._pane_at = pane_at  # from a pixel to the pane of slices that it is in; None for the plotter's camera
         self._pane: Any = None

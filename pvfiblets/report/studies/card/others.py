@@ -20,6 +20,8 @@ from .scenes import SIZE, SMALL, Judged, Scene
 if TYPE_CHECKING:
     import moderngl
 
+    from pvfiblets.engine.gbuffer import GBuffer
+
 TURNS = 90  # pictures of a whole turn
 PICTURES = 4
 TUBES, HELICES, VOXELS = 5, 6, 40
@@ -49,7 +51,7 @@ def capsules_of(lines: Sequence[Array], radius: float) -> Any:
     )  # fmt: skip
 
 
-def judge_depths(gbuffer: Any, tubes: Any, camera: Camera) -> Judged:
+def judge_depths(gbuffer: GBuffer, tubes: Any, camera: Camera) -> Judged:
     """Hold a G-buffer against where rays meet tubes."""
     lens, truth = Lens.from_camera(camera), _truth(tubes, camera)
     keys = np.frombuffer(gbuffer.depth.read(), np.uint32)

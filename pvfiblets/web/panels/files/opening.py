@@ -21,6 +21,7 @@ from pvfiblets.web.session.document import LINES
 
 if TYPE_CHECKING:
     from pvfiblets.support.vtk_space import Space
+    from pvfiblets.web.app import Explorer
     from pvfiblets.web.session.document import Source
 
 PIECE = MEBIBYTE  # bytes of an upload at a time
@@ -39,7 +40,7 @@ MOST_MARKED = 64  # files that are chosen at once
 class FileActions(SessionActions):
     """The files of an application."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._for = ""  # what the file that is chosen next is for, of PURPOSES
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 import asyncio
 import logging
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.errors import FibletsError
 from pvfiblets.web.background_work import BackgroundWork
 from pvfiblets.web.scene.files.loading import Cancelled
 from pvfiblets.web.session import files as session
+
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
 
 logger = logging.getLogger("pvfiblets.web")
 
@@ -23,7 +26,7 @@ LARGEST_KEPT = 64 << 20  # bytes
 class SessionActions(BackgroundWork):
     """The sessions of an application."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._timer: asyncio.TimerHandle | None = None
         self._changed: float | None = None  # when the first change came that is not kept yet

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.colours.scalars import UNITS
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.panels.charts import profile_chart, short
 from pvfiblets.web.panels.csv_tables import profile_csv
 from pvfiblets.web.server.rpc_allowlist import number
+
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
 
 ROWS = 200
 CLICK = 3.0  # pixels: a shorter drag is a click
@@ -17,7 +20,7 @@ CLICK = 3.0  # pixels: a shorter drag is a click
 class SelectionActions(Actions):
     """Picking and the selection of an application's scene."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._profile: str | None = None
         self._begin: list[float] | None = None  # the first of two clicks of the tool that measures, mm
