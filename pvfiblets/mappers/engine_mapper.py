@@ -61,10 +61,13 @@ from pvfiblets.mappers.vtk_pipeline.readable_lines import LineReading, readable_
 from pvfiblets.mappers.vtk_pipeline.vtk_overrides import override
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import moderngl
     from vtkmodules.vtkCommonDataModel import vtkPolyData
     from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
+    from pvfiblets.engine.effects.picture import SeenThrough
     from pvfiblets.mappers.line_data import LineData
     from pvfiblets.mappers.vtk_pipeline.vtk_input import VtkInput
 
@@ -155,7 +158,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         return not (self._drawn.n_streamlines and self._drawn.n_points)
 
     @property
-    def _extent(self) -> Any:
+    def _extent(self) -> Sequence[float]:
         """Bounds of the data, mm."""
         return thickened(self._drawn.bounds, self._thickness)
 
@@ -372,7 +375,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             style = replace(style, edges=True, exact=sample)
         return view, style
 
-    def _faint_light(self, buffer: Any) -> Any:
+    def _faint_light(self, buffer: Any) -> SeenThrough:
         """Return what depth of field is to know of a G-buffer of something translucent."""
         from pvfiblets.engine.effects.picture import SeenThrough
 
@@ -399,7 +402,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     def _outside(
         self, context: WindowContext, slot: Slot, renderer: vtkRenderer, viewport: tuple[int, int, int, int]
-    ) -> Any:
+    ) -> moderngl.Texture | None:
         """Return the depth of earlier objects, as keys; None if it cannot be read."""
         actor = self.actor
         if not self._sums_up and actor is not None and others_before(renderer, actor):

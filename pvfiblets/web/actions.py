@@ -32,7 +32,7 @@ class LineActions(Actions):
     """Actions on the chosen layer of lines."""
 
     @property
-    def _layer(self) -> Any:
+    def _layer(self) -> Layer:
         """The chosen layer, which must be of lines."""
         page = self._app.page
         if not page.chosen or page.chosen_kind not in LINES:

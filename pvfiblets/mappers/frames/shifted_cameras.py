@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkCamera, vtkRenderer, vtkRenderWindow
@@ -37,7 +37,7 @@ def shift(camera: vtkCamera, size: tuple[int, int], by: tuple[float, float]) -> 
     return back
 
 
-def shifted_copy(camera: vtkCamera, size: tuple[int, int], by: tuple[float, float]) -> Any:
+def shifted_copy(camera: vtkCamera, size: tuple[int, int], by: tuple[float, float]) -> vtkCamera:
     """Return a camera that shows what another one would if it were shifted: see `shift`."""
     copy = camera.NewInstance()
     copy.DeepCopy(camera)
@@ -80,7 +80,7 @@ def note_depths(renderer: vtkRenderer, *, exact: bool) -> None:
     (_renderers.discard if exact else _renderers.add)(renderer.GetAddressAsString(""))
 
 
-def with_exact_depths(window: vtkRenderWindow) -> Any:
+def with_exact_depths(window: vtkRenderWindow) -> vtkRenderWindow:
     """Return a window with the depths of unshifted cameras, redrawn if necessary."""
     found = window.GetRenderers()
     shown = {found.GetItemAsObject(index).GetAddressAsString("") for index in range(found.GetNumberOfItems())}

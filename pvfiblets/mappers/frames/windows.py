@@ -49,7 +49,7 @@ def gl_viewport(window: Any) -> tuple[int, int, int, int]:
     return x, y, width, height
 
 
-def _attach() -> Any:
+def _attach() -> moderngl.Context:
     """Return a moderngl context of its own on the current GL context."""
     # `moderngl.create_context` may return one that was made for another window.
     moderngl.init_context()

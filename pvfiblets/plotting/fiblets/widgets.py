@@ -133,7 +133,7 @@ def _uncut(actors: Sequence[FibletActor], name: str) -> None:
             actor.unclip(name)
 
 
-def _box_region(box: pv.PolyData) -> Any:
+def _box_region(box: pv.PolyData) -> Region:
     """Return the region of VTK's box: its first eight points are the corners, turned or not."""
     from pvfiblets import regions
 

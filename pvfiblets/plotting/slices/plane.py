@@ -205,7 +205,7 @@ def before_render(renderer: vtkRenderer, owner: Any, method: str) -> Any:
     return on_events(renderer, ("StartEvent", _PREPARE), owner, method)
 
 
-def on_events(caller: Any, events: tuple[str, ...], owner: Any, method: str) -> Any:
+def on_events(caller: Any, events: tuple[str, ...], owner: Any, method: str) -> Callable[[], None]:
     """Call an owner's method at events of an object of VTK's; neither keeps the other alive."""
     reference = weakref.ref(owner)
 

@@ -21,6 +21,8 @@ from pvfiblets.web.view.sent_scene import LARGEST, MOST, SentScene, SentScenes
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from aiohttp import web
+
     from pvfiblets.web.app import Explorer
 
 logger = logging.getLogger("pvfiblets.web")
@@ -147,13 +149,13 @@ class BrowserDrawing(Actions):
 
     # What browsers fetch
 
-    async def send_script(self, _: Any) -> Any:
+    async def send_script(self, _: Any) -> web.FileResponse:
         """Respond to a browser that fetches the scene's data."""
         from aiohttp import web
 
         return web.FileResponse(Path(page.__file__).with_name("page.js"), headers={"Content-Type": "text/javascript"})
 
-    async def send(self, request: Any) -> Any:
+    async def send(self, request: web.Request) -> web.Response:
         """Answer a browser that fetches data."""
         from aiohttp import web
 

@@ -26,6 +26,8 @@ from pvfiblets.web.server.options import MEBIBYTE
 from pvfiblets.web.session.document import LINES
 
 if TYPE_CHECKING:
+    from aiohttp import web
+
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.web.app import Explorer
     from pvfiblets.web.scene.files.loading import Cancel, Progress
@@ -146,7 +148,7 @@ class ExportActions(Actions):
         points = held.told(done["error_mm"])
         app.say(f"{done['streamlines']:,} streamlines {where} as {name} ({size}); {points}{lost}", "success")
 
-    def _owner(self, what: str) -> Any:
+    def _owner(self, what: str) -> Layer:
         """The layer that is exported: the chosen one, or of selections the first that has one."""
         scene, chosen = self._app.scene, self._app.page.chosen
         if what == "selected":
@@ -193,7 +195,7 @@ class ExportActions(Actions):
             if old.temporary:
                 old.path.unlink(missing_ok=True)
 
-    async def send(self, request: Any) -> Any:
+    async def send(self, request: web.Request) -> web.FileResponse:
         """Answer a browser that fetches a file."""
         from aiohttp import web
 

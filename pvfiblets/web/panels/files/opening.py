@@ -20,6 +20,8 @@ from pvfiblets.web.server.rpc_allowlist import EXPECTED, sentence
 from pvfiblets.web.session.document import LINES
 
 if TYPE_CHECKING:
+    from aiohttp import web
+
     from pvfiblets.support.vtk_space import Space
     from pvfiblets.web.app import Explorer
     from pvfiblets.web.session.document import Source
@@ -211,7 +213,7 @@ class FileActions(SessionActions):
             except EXPECTED as error:  # the others are opened all the same
                 self._app.complain(sentence(error))
 
-    async def receive(self, request: Any) -> Any:
+    async def receive(self, request: web.Request) -> web.Response:
         """Take an upload into the root, and open it; a file of its name is never replaced."""
         from aiohttp import web
 

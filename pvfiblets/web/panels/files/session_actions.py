@@ -13,6 +13,8 @@ from pvfiblets.web.scene.files.loading import Cancelled
 from pvfiblets.web.session import files as session
 
 if TYPE_CHECKING:
+    from aiohttp import web
+
     from pvfiblets.web.app import Explorer
 
 logger = logging.getLogger("pvfiblets.web")
@@ -52,7 +54,7 @@ class SessionActions(BackgroundWork):
         place = self._app.confined.existing(path)
         self.load_session(session.read(place), place.parent)
 
-    async def receive_session(self, request: Any) -> Any:
+    async def receive_session(self, request: web.Request) -> web.Response:
         """Open the session that a browser uploads; the front server has checked its size."""
         from aiohttp import web
 

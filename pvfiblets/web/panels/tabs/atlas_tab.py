@@ -78,7 +78,7 @@ class AtlasActions(Actions):
             self._listed = data, found
         return self._listed[1]
 
-    def _lines(self) -> Any:
+    def _lines(self) -> Layer:
         """The chosen tractogram, or the first."""
         scene, chosen = self._app.scene, self._app.page.chosen
         lines = [layer for layer in scene.layers if layer.kind in LINES]

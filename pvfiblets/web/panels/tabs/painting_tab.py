@@ -20,6 +20,8 @@ from pvfiblets.web.session.painting import USES
 
 if TYPE_CHECKING:
     from pvfiblets.web.app import Explorer
+    from pvfiblets.web.session.document import Layer
+    from pvfiblets.web.session.painting import Painting
 
 PAINTING = f"{list(TOOLS)}.includes(tool)"  # whether a tool that paints is in hand, for the page
 
@@ -76,13 +78,13 @@ class PaintActions(Actions):
         return f"{self._app.scene.canvas.live(fiblets).count(region.name):,}"
 
     def _counted(self) -> str:
-        fiblets = self._fiblets()
-        if fiblets is None:
+        layer, fiblets = self._of(), self._fiblets()
+        if layer is None or fiblets is None:
             return ""
-        shown = int(np.count_nonzero(self._app.scene.actor(self._of().id).shown))
+        shown = int(np.count_nonzero(self._app.scene.actor(layer.id).shown))
         return f"{shown:,} of {fiblets.n_streamlines:,} streamlines are shown"
 
-    def _of(self) -> Any:
+    def _of(self) -> Layer | None:
         """The chosen tractogram, or the first."""
         scene, chosen = self._app.scene, self._app.page.chosen
         lines = [layer for layer in scene.layers if layer.kind in LINES]
@@ -147,7 +149,7 @@ class PaintActions(Actions):
         app.say(f"Saved as {name}; label names are in {stem}.tsv.", "success")
 
     @property
-    def _painting(self) -> Any:
+    def _painting(self) -> Painting:
         found = self._app.scene.state.painting
         if found is None:
             raise ValueError("there are no painted regions; add one first")

@@ -12,6 +12,7 @@ from pvfiblets.web.server.rpc_allowlist import number
 
 if TYPE_CHECKING:
     from pvfiblets.web.app import Explorer
+    from pvfiblets.web.session.document import Layer
 
 ROWS = 200
 CLICK = 3.0  # pixels: a shorter drag is a click
@@ -139,7 +140,7 @@ class SelectionActions(Actions):
         }
         self._shown = shown
 
-    def _owner(self) -> Any:
+    def _owner(self) -> Layer:
         """The layer whose selection is profiled: the chosen one, or the first that has one."""
         scene = self._app.scene
         having = [layer for layer in scene.layers if layer.selected is not None]

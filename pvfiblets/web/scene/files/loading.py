@@ -125,7 +125,7 @@ class Files:
         while len(self._coded) > MOST_REMEMBERED:
             self._coded.pop(next(iter(self._coded)))
 
-    def spooled(self, save: Callable[[Path], Any]) -> Any:
+    def spooled(self, save: Callable[[Path], Any]) -> FibletSet:
         """Return the fiblets of a temporary file, which is removed when unused."""
         from pvfiblets.codec.fibletset import FibletSet
 
