@@ -7,7 +7,7 @@ import math
 import numba
 import numpy as np
 
-from ...support.array_types import Bools, Float64s, Int64s
+from ...support.array_types import Bools, Float64s, Int64s, UInt16s, UInt32s
 from ..capsules import MARGIN
 from ..jit import kernel, parallel_kernel
 from ..layout import END_BITS, END_LEVELS
@@ -25,6 +25,14 @@ def end_word(x: float, y: float, z: float, scale: float) -> int:
         word |= (int(level) & _MASK) << shift
         shift += END_BITS
     return word
+
+
+@kernel
+def anchor_part(anchors: UInt32s, low: UInt16s, fine: bool, f: int, axis: int) -> float:
+    """One component of an anchor, in units of the grid."""
+    word = anchors[f, axis // 2]
+    q = float((word >> 16) & 0xFFFF) if axis == 1 else float(word & 0xFFFF)
+    return q * 65536.0 + float(low[f, axis]) if fine else q
 
 
 @kernel

@@ -12,7 +12,7 @@ import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
-from ...codec.kernels.capsule_kernels import end_part
+from ...codec.kernels.capsule_kernels import anchor_part, end_part
 from ...codec.kernels.decode_kernels import decode_one
 from ...codec.layout import PAGE_BITS
 from ...support.array_types import Bools, Float32s, Float64s, Int64s, UInt8s, UInt16s, UInt32s
@@ -24,13 +24,6 @@ UP = 1.0 + 1e-6  # rounds a length in float32 up
 
 
 @kernel
-def _anchor(anchors: UInt32s, low: UInt16s, fine: bool, f: int, axis: int) -> float:
-    word = anchors[f, axis // 2]
-    q = float((word >> 16) & 0xFFFF) if axis == 1 else float(word & 0xFFFF)
-    return q * 65536.0 + float(low[f, axis]) if fine else q
-
-
-@kernel
 def next_anchor(
     anchors: UInt32s, low: UInt16s, fine: bool, origin: Float64s, scale: Float64s, f: int, out: Float64s, row: int
 ) -> int:
@@ -38,7 +31,7 @@ def next_anchor(
     if anchors[f, 1] >> 31 or f + 1 >= len(anchors):
         return 0
     for axis in range(3):
-        out[row, axis] = scale[axis] * _anchor(anchors, low, fine, f + 1, axis) + origin[axis]
+        out[row, axis] = scale[axis] * anchor_part(anchors, low, fine, f + 1, axis) + origin[axis]
     return 1
 
 
@@ -52,11 +45,11 @@ def chords(first: int, anchors: UInt32s, low: UInt16s, fine: bool, ends: UInt32s
             f = first + k
             rank = bases[f >> PAGE_BITS] + ((anchors[f, 1] >> 16) & 0x3FFF)
             for axis in range(3):
-                a = scale[axis] * _anchor(anchors, low, fine, f, axis)
+                a = scale[axis] * anchor_part(anchors, low, fine, f, axis)
                 if anchors[f, 1] >> 31 or f + 1 >= len(anchors):
                     b = a + end_scale * (end_part(np.int64(ends[rank]), axis) if rank < len(ends) else 0)
                 else:
-                    b = scale[axis] * _anchor(anchors, low, fine, f + 1, axis)
+                    b = scale[axis] * anchor_part(anchors, low, fine, f + 1, axis)
                 c[axis], c[3 + axis] = a + origin[axis], b + origin[axis]
             turned = _turned(c[3] - c[0], c[4] - c[1], c[5] - c[2])
             for axis in range(3):

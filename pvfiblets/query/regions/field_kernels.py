@@ -75,26 +75,12 @@ def _along_y(squares: Float32s, size: float) -> None:
                 squares[z, y, x] = out[y]
 
 
-@parallel_kernel
-def _along_z(squares: Float32s, size: float) -> None:
-    nz, ny, nx = squares.shape
-    for y in numba.prange(ny):
-        line, out = np.empty(nz), np.empty(nz)
-        places, starts = np.empty(nz, np.int64), np.empty(nz)
-        for x in range(nx):
-            for z in range(nz):
-                line[z] = squares[z, y, x]
-            _lower_envelope(line, out, size, places, starts)
-            for z in range(nz):
-                squares[z, y, x] = out[z]
-
-
 def squared_distances(targets: Any, sizes: Any) -> Any:
     """Squared distances of voxel centres from the nearest target's centre."""
     squares = np.empty(targets.shape, np.float32)
     _along_x(targets, squares, float(sizes[0]))
     _along_y(squares, float(sizes[1]))
-    _along_z(squares, float(sizes[2]))
+    _along_y(squares.swapaxes(0, 1), float(sizes[2]))  # along z
     return squares
 
 

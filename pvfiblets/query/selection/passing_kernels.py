@@ -8,7 +8,7 @@ import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
-from ...codec.kernels.capsule_kernels import end_part
+from ...codec.kernels.capsule_kernels import anchor_part, end_part
 from ...support.array_types import Bools, Float32s, Float64s, Int8s, Int32s, Int64s, UInt8s, UInt16s, UInt32s
 from ..regions.classify import classify_ball
 from .point_flags import ALL, ANY, FIRST, LAST
@@ -25,22 +25,15 @@ def balls(anchors: UInt32s, low: UInt16s, fine: bool, ends: UInt32s, reach: UInt
         last = anchors[f, 1] >> 31
         chord = 0.0
         for axis in range(3):
-            q = _coordinate(anchors, low, fine, f, axis)
+            q = anchor_part(anchors, low, fine, f, axis)
             a = scale[axis] * q
             if last:
                 b = a + end_scale * end_part(np.int64(ends[f]), axis)
             else:
-                b = scale[axis] * _coordinate(anchors, low, fine, f + 1, axis)
+                b = scale[axis] * anchor_part(anchors, low, fine, f + 1, axis)
             out[f, axis] = 0.5 * (a + b) + origin[axis]
             chord += (b - a) * (b - a)
         radii[f] = 0.5 * math.sqrt(chord) + reach_scale * reach[f] + slack
-
-
-@kernel
-def _coordinate(anchors: UInt32s, low: UInt16s, fine: bool, f: int, axis: int) -> float:
-    word = anchors[f, axis // 2]
-    q = float((word >> 16) & 0xFFFF) if axis == 1 else float(word & 0xFFFF)
-    return q * 65536.0 + float(low[f, axis]) if fine else q
 
 
 @kernel

@@ -8,7 +8,7 @@ import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
-from ...codec.kernels.capsule_kernels import end_part
+from ...codec.kernels.capsule_kernels import anchor_part, end_part
 from ...codec.layout import PAGE_BITS
 from ...support.array_types import Bools, Float64s, Int64s, UInt16s, UInt32s
 
@@ -171,9 +171,9 @@ def candidates(first: int, count: int, arrays: tuple[UInt32s, UInt16s, UInt16s, 
         for k in range(len(spaces)):
             at, to = spaces[k, 3], spaces[k, 3]
             for axis in range(3):
-                a = _anchor(anchors, low, fine, f, axis) * scale[axis] + origin[axis]
+                a = anchor_part(anchors, low, fine, f, axis) * scale[axis] + origin[axis]
                 if not ends_here:
-                    b = _anchor(anchors, low, fine, f + 1, axis) * scale[axis] + origin[axis]
+                    b = anchor_part(anchors, low, fine, f + 1, axis) * scale[axis] + origin[axis]
                 else:
                     b = a + end_scale * (end_part(np.int64(ends[rank]), axis) if rank < len(ends) else 0)
                 at += spaces[k, axis] * a
@@ -185,9 +185,9 @@ def candidates(first: int, count: int, arrays: tuple[UInt32s, UInt16s, UInt16s, 
             continue
         chord = 0.0
         for axis in range(3):
-            a = _anchor(anchors, low, fine, f, axis) * scale[axis] + origin[axis]
+            a = anchor_part(anchors, low, fine, f, axis) * scale[axis] + origin[axis]
             if not ends_here:
-                b = _anchor(anchors, low, fine, f + 1, axis) * scale[axis] + origin[axis]
+                b = anchor_part(anchors, low, fine, f + 1, axis) * scale[axis] + origin[axis]
             else:
                 b = a + end_scale * (end_part(np.int64(ends[rank]), axis) if rank < len(ends) else 0)
             balls[m, axis] = 0.5 * (a + b)
@@ -196,13 +196,6 @@ def candidates(first: int, count: int, arrays: tuple[UInt32s, UInt16s, UInt16s, 
         found[m] = True
         total += 1
     return total
-
-
-@kernel
-def _anchor(anchors: UInt32s, low: UInt16s, fine: bool, f: int, axis: int) -> float:
-    """One component of an anchor in units of the grid."""
-    q = float((anchors[f, axis >> 1] >> np.uint32(16 * (axis & 1))) & np.uint32(0xFFFF))
-    return q * 65536.0 + float(low[f, axis]) if fine else q
 
 
 @kernel
