@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.support.ragged import Array, Ints
+from pvfiblets.support.ragged import Array, Floats, Ints
 from pvfiblets.support.vtk_space import FIELD, OURS, Space, space_of_dataset, to_ras
 
 if TYPE_CHECKING:
     import pyvista
-
-    from pvfiblets.streamlines import Streamlines
 
 NOT_LINES = "cells that are not lines"  # why cells were left out, of `dropped`
 _GROUP = "groups/"
@@ -52,39 +50,47 @@ def parts_of_polydata(polydata: Any) -> dict[str, Any]:
     )
 
 
-def polydata_of(streamlines: Streamlines) -> pyvista.PolyData:
+def polydata_of(
+    points: Floats,
+    offsets: Ints,
+    point_data: Mapping[str, Array],
+    cell_data: Mapping[str, Array],
+    field: Mapping[str, Array],
+) -> pyvista.PolyData:
     """Return what :meth:`.Streamlines.to_polydata` does."""
     import pyvista
 
     mesh = pyvista.PolyData()
-    mesh.points = np.ascontiguousarray(streamlines.points)
-    ids = np.arange(streamlines.n_points, dtype=np.int64)
-    cells = pyvista.CellArray.from_arrays(streamlines.offsets, ids, deep=True)
+    mesh.points = np.ascontiguousarray(points)
+    cells = pyvista.CellArray.from_arrays(offsets, np.arange(len(points), dtype=np.int64), deep=True)
     mesh.SetLines(cells)
-    for data, columns in (
-        (mesh.point_data, streamlines.per_point),
-        (mesh.cell_data, streamlines.per_streamline),
-    ):
+    for data, columns in ((mesh.point_data, point_data), (mesh.cell_data, cell_data)):
         for name, values in columns.items():
             if values.size:  # PyVista has no arrays without rows
                 data[name] = np.ascontiguousarray(_vtk_values(values))
-    for name, array in field_of(streamlines).items():
+    for name, array in field.items():
         mesh.field_data[name] = array
     mesh.field_data[FIELD] = [OURS]
     return mesh
 
 
-def field_of(streamlines: Streamlines) -> dict[str, Array]:
+def field_of(
+    n_lines: int,
+    groups: Mapping[str, Array],
+    per_group: Mapping[str, Mapping[str, Array]],
+    affine: Array,
+    space: Mapping[str, Any],
+) -> dict[str, Array]:
     """Return groups, group data, affine and space as flat named arrays; see :meth:`.Streamlines.to_polydata`."""
-    field: dict[str, Array] = {_GROUP + k: v for k, v in streamlines.groups.items()}
+    field: dict[str, Array] = {_GROUP + k: v for k, v in groups.items()}
     if field:
-        field[_GROUPS_OF] = np.array([len(streamlines)])
-    for group, values in streamlines.per_group.items():
+        field[_GROUPS_OF] = np.array([n_lines])
+    for group, values in per_group.items():
         for name, value in values.items():
             field[f"{_PER_GROUP}{group}/{name}"] = np.atleast_1d(_vtk_values(value))
-    if not np.array_equal(streamlines.affine, np.eye(4)):
-        field["affine"] = streamlines.affine
-    for name, value in streamlines.space.items():
+    if not np.array_equal(affine, np.eye(4)):
+        field["affine"] = affine
+    for name, value in space.items():
         text = np.frombuffer(value.encode(), np.uint8) if isinstance(value, str) else None
         array = np.atleast_1d(np.asarray(value)) if text is None else text
         if array.size and array.dtype.kind in "fiub":

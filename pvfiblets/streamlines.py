@@ -370,8 +370,8 @@ class Streamlines:
         VTK loses arrays of text in some of its formats) are kept as field data. The field array ``SPACE`` says ``RAS``,
         for 3D Slicer.
         """
-        return polydata_of(self)
+        return polydata_of(self.points, self.offsets, self.per_point, self.per_streamline, self.field_data())
 
     def field_data(self) -> dict[str, Array]:
         """Return groups, group data, affine and space as flat named arrays (see :meth:`to_polydata`)."""
-        return field_of(self)
+        return field_of(len(self), self.groups, self.per_group, self.affine, self.space)

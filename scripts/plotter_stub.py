@@ -27,7 +27,7 @@ KNOWN = {
     "PerPoint": "from pvfiblets.codec.encoding.compress import PerPoint",
     "Preference": "from pvfiblets.plotting.colours.same_names import Preference",
     "Sequence": "from collections.abc import Sequence",
-    "Threshold": "from pvfiblets.plotting.halos.style import Threshold",
+    "Threshold": "from pvfiblets.plotting.halos.settings import Threshold",
     "TransformLike": "from pyvista.core._typing_core import TransformLike",
     "np": "import numpy as np",
 }

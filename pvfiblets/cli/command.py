@@ -19,7 +19,7 @@ from pvfiblets.cli import file_arguments as files
 from pvfiblets.cli import scene_arguments as scenes
 from pvfiblets.cli.batch import add_options as add_batch_options
 from pvfiblets.cli.memory import held_to
-from pvfiblets.cli.parser import Parser
+from pvfiblets.cli.parser import Commands, Parser
 from pvfiblets.cli.pipes import Pipes
 from pvfiblets.cli.values import angle, count, positive
 from pvfiblets.errors import EXPECTED, sentence
@@ -107,7 +107,7 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_gl(commands: Any) -> None:
+def _add_gl(commands: Commands) -> None:
     gl = commands.add_parser(
         "gl",
         help="print this machine's OpenGL and its pipelines, and check their output",
@@ -129,7 +129,7 @@ def _add_gl(commands: Any) -> None:
     gl.set_defaults(run="pvfiblets.cli.gl:gl")
 
 
-def _add_demo(commands: Any) -> None:
+def _add_demo(commands: Commands) -> None:
     demo = commands.add_parser(
         "demo",
         help="make, compress and render a tractogram like a whole brain's, and print size and error",
@@ -147,7 +147,7 @@ def _add_demo(commands: Any) -> None:
     demo.set_defaults(run="pvfiblets.cli.pictures:demo")
 
 
-def _add_report(commands: Any) -> None:
+def _add_report(commands: Commands) -> None:
     report = commands.add_parser(
         "report",
         help="measure error against run time of every approximation and of other methods",

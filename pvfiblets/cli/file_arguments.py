@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
 
 from pvfiblets.cli.memory import add_memory_option, bytes_of_file
+from pvfiblets.cli.parser import Commands
 from pvfiblets.cli.pipes import add_format_option, add_image_options, add_surface_option
 from pvfiblets.cli.values import angle, count, positive
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
 
-def add_convert(commands: Any) -> None:
+def add_convert(commands: Commands) -> None:
     """``convert``."""
     convert = commands.add_parser(
         "convert",
@@ -103,7 +103,7 @@ def add_convert(commands: Any) -> None:
     convert.set_defaults(run="pvfiblets.cli.files:convert")
 
 
-def add_info(commands: Any) -> None:
+def add_info(commands: Commands) -> None:
     """``info``."""
     info = commands.add_parser(
         "info",
@@ -119,7 +119,7 @@ def add_info(commands: Any) -> None:
     info.set_defaults(run="pvfiblets.cli.files:info")
 
 
-def add_verify(commands: Any) -> None:
+def add_verify(commands: Commands) -> None:
     """``verify``."""
     verify = commands.add_parser(
         "verify",
@@ -144,7 +144,7 @@ def add_verify(commands: Any) -> None:
     verify.set_defaults(run="pvfiblets.cli.files:verify")
 
 
-def add_density(commands: Any) -> None:
+def add_density(commands: Commands) -> None:
     """``density``."""
     parser = commands.add_parser("density", help="write a density map: streamlines, lengths, directions or means "
                                                  "per voxel")
@@ -177,7 +177,7 @@ def add_density(commands: Any) -> None:
     parser.set_defaults(run="pvfiblets.cli.density:density")
 
 
-def add_connectome(commands: Any) -> None:
+def add_connectome(commands: Commands) -> None:
     """``connectome``."""
     matrix = commands.add_parser(
         "connectome",
@@ -209,7 +209,7 @@ def add_connectome(commands: Any) -> None:
     matrix.set_defaults(run="pvfiblets.cli.connectome:connectome")
 
 
-def add_table(commands: Any) -> None:
+def add_table(commands: Commands) -> None:
     """``table``."""
     table = commands.add_parser(
         "table",
@@ -236,7 +236,7 @@ def add_table(commands: Any) -> None:
     table.set_defaults(run="pvfiblets.cli.bundles:table")
 
 
-def add_profile(commands: Any) -> None:
+def add_profile(commands: Commands) -> None:
     """``profile``."""
     parser = commands.add_parser(
         "profile",
@@ -272,7 +272,7 @@ def _add_point_weights(parser: argparse.ArgumentParser) -> None:
                              "(default: %(default)s)")  # fmt: skip
 
 
-def add_sample(commands: Any) -> None:
+def add_sample(commands: Commands) -> None:
     """``sample``."""
     parser = commands.add_parser(
         "sample",

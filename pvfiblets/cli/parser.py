@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, TypeAlias
 
 
 class Parser(argparse.ArgumentParser):
@@ -39,3 +39,7 @@ class Parser(argparse.ArgumentParser):
 def _like(word: str, known: Iterable[str]) -> str:
     alike = get_close_matches(word, list(known), 1)
     return f"; did you mean {alike[0]}?" if alike else ""
+
+
+Commands: TypeAlias = "argparse._SubParsersAction[Parser]"  # noqa: SLF001 - argparse has no public name
+"""What ``add_subparsers`` returns."""

@@ -22,6 +22,8 @@ from pvfiblets.volumes.gifti_files import VALUES as OF_GIFTI
 from pvfiblets.web.values import plain
 
 if TYPE_CHECKING:
+    import pyvista as pv
+
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.streamlines import Streamlines
 
@@ -106,7 +108,7 @@ def make_plotter(*, off_screen: bool, size: tuple[int, int] | None, **panels: An
 
 
 def fill(
-    plotter: Any,
+    plotter: pv.BasePlotter,
     paths: list[str],
     *,
     view: str | None,
@@ -288,7 +290,7 @@ def demo(*, output: str, streamlines: int, step: float, seed: int, json: bool) -
         print(demo_table(plain(result), original, compressed))
 
 
-def _show_colourings(plotter: Any, fiblets: FibletSet, brain: Streamlines) -> int:
+def _show_colourings(plotter: pv.BasePlotter, fiblets: FibletSet, brain: Streamlines) -> int:
     """Show a brain from the left, large, and beside it in four colourings; return the bytes of the large one."""
     from pvfiblets.codec.encoding.compress import compress
     from pvfiblets.plotting.viewpoints import point_camera

@@ -15,6 +15,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import pyvista as pv
+
+    from pvfiblets.query.regions.region import Region
+    from pvfiblets.query.selection.predicates import Predicate
+    from pvfiblets.web.scene.scene import Scene
     from pvfiblets.web.session.shapes import Load
 
 KINDS = ("lines", "volumes", "meshes")  # what `--clip` cuts, by `of=`
@@ -134,7 +139,7 @@ def cut_and_filter(actors: Mapping[str, Sequence[Any]], wishes: Wishes) -> None:
             actor.subset(**({"every": amount} if every[1] else {"amount": amount}))
 
 
-def _condition(words: Sequence[str], option: str, load: Load) -> Any:
+def _condition(words: Sequence[str], option: str, load: Load) -> Predicate:
     from pvfiblets.web.session.shapes import HOWS, check_condition, make_predicate
 
     how, rest = (words[0], words[1:]) if words[0] in HOWS else ("passes", words)
@@ -144,7 +149,7 @@ def _condition(words: Sequence[str], option: str, load: Load) -> Any:
     return make_predicate(check_condition({"how": how, "region": shape, **sampling}, option), load)
 
 
-def _region(shape: Mapping[str, Any], load: Load) -> Any:
+def _region(shape: Mapping[str, Any], load: Load) -> Region:
     from pvfiblets.web.session.shapes import make_region
 
     return make_region(shape, load)
@@ -190,7 +195,7 @@ def _cut(actor: Any, region: Any, inside: bool) -> None:
     )
 
 
-def open_session(plotter: Any, path: str) -> Any:
+def open_session(plotter: pv.BasePlotter, path: str) -> Scene:
     """Draw a session, as ``pvfiblets serve`` saves it, and look at it from where it says; return its scene."""
     from pvfiblets.web.scene.scene import Scene
     from pvfiblets.web.session.files import load

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
 
+from pvfiblets.cli.parser import Commands
 from pvfiblets.cli.pipes import add_format_option, add_image_options, add_space_option, add_surface_option
 from pvfiblets.cli.scene import add_options
 from pvfiblets.cli.values import antialias, count, positive, size
@@ -14,7 +14,7 @@ LOOKS = ("plain", "illuminated", "tubes", "glass", "density", "ink", "studio")
 VIEWS = ("axial", "coronal", "sagittal", "inferior", "posterior", "right", "oblique")
 
 
-def add_screenshot(commands: Any) -> None:
+def add_screenshot(commands: Commands) -> None:
     """``screenshot``."""
     screenshot = commands.add_parser(
         "screenshot",
@@ -31,7 +31,7 @@ def add_screenshot(commands: Any) -> None:
     screenshot.set_defaults(run="pvfiblets.cli.pictures:screenshot")
 
 
-def add_show(commands: Any) -> None:
+def add_show(commands: Commands) -> None:
     """``show``."""
     show = commands.add_parser(
         "show",
@@ -45,7 +45,7 @@ def add_show(commands: Any) -> None:
     show.set_defaults(run="pvfiblets.cli.pictures:show")
 
 
-def add_page(commands: Any) -> None:
+def add_page(commands: Commands) -> None:
     """``page``."""
     page = commands.add_parser(
         "page",
@@ -63,7 +63,7 @@ def add_page(commands: Any) -> None:
     page.set_defaults(run="pvfiblets.cli.pictures:page")
 
 
-def add_serve(commands: Any) -> None:
+def add_serve(commands: Commands) -> None:
     """``serve``."""
     parser = commands.add_parser("serve", help="explore files in a browser")
     parser.description = (

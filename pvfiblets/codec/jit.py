@@ -121,7 +121,7 @@ class _ParallelKernel:
         return (self._serial if _threads_left_behind else self._threaded)(*arguments)
 
 
-def parallel_kernel(function: Any) -> Any:
+def parallel_kernel(function: Any) -> _ParallelKernel:
     """The same for one whose ``numba.prange`` loops run on all cores; other kernels cannot call it."""
     return _ParallelKernel(function)
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 import numpy as np
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_OBJECT
-from vtkmodules.vtkCommonCore import vtkOutputWindow
+from vtkmodules.vtkCommonCore import vtkCommand, vtkOutputWindow
 from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 
@@ -58,11 +58,16 @@ from pvfiblets.mappers.vtk_pipeline.actor_link import ActorLink
 from pvfiblets.mappers.vtk_pipeline.connection import Connection
 from pvfiblets.mappers.vtk_pipeline.proxy import proxy_polydata
 from pvfiblets.mappers.vtk_pipeline.readable_lines import LineReading, readable_mapper
+from pvfiblets.mappers.vtk_pipeline.vtk_overrides import override
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import moderngl
     from vtkmodules.vtkCommonDataModel import vtkPolyData
+    from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
+    from pvfiblets.engine.effects.picture import SeenThrough
     from pvfiblets.mappers.line_data import LineData
     from pvfiblets.mappers.vtk_pipeline.vtk_input import VtkInput
 
@@ -111,7 +116,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         self._factory = renderer_factory
         self._options = options
         self._made_with = made_with  # further keywords of the factory
-        self._link = ActorLink(self)
+        self._link = ActorLink(self, override)  # VTK may have loaded more exporters since
         self._connection = Connection(self)
         self.reading = LineReading(self, self._connection, self._link)
         self._active = ActiveRenderer()
@@ -153,7 +158,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         return not (self._drawn.n_streamlines and self._drawn.n_points)
 
     @property
-    def _extent(self) -> Any:
+    def _extent(self) -> Sequence[float]:
         """Bounds of the data, mm."""
         return thickened(self._drawn.bounds, self._thickness)
 
@@ -370,7 +375,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
             style = replace(style, edges=True, exact=sample)
         return view, style
 
-    def _faint_light(self, buffer: Any) -> Any:
+    def _faint_light(self, buffer: Any) -> SeenThrough:
         """Return what depth of field is to know of a G-buffer of something translucent."""
         from pvfiblets.engine.effects.picture import SeenThrough
 
@@ -397,7 +402,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     def _outside(
         self, context: WindowContext, slot: Slot, renderer: vtkRenderer, viewport: tuple[int, int, int, int]
-    ) -> Any:
+    ) -> moderngl.Texture | None:
         """Return the depth of earlier objects, as keys; None if it cannot be read."""
         actor = self.actor
         if not self._sums_up and actor is not None and others_before(renderer, actor):
@@ -471,7 +476,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         found = self._user_input()
         return super().GetInputConnection(port, index) if found is None else found.GetInputConnection(port, index)
 
-    def GetInputAlgorithm(self, port: int = 0, index: int = 0) -> Any:  # noqa: N802 - VTK's name
+    def GetInputAlgorithm(self, port: int = 0, index: int = 0, *_ports: Any) -> Any:  # noqa: N802 - VTK's name
         """Return the algorithm that was connected."""
         connection = self.GetInputConnection(port, index)
         return None if connection is None else connection.GetProducer()
@@ -625,7 +630,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     # Memory
 
-    def release(self, window: Any = None) -> None:
+    def release(self, window: vtkRenderWindow | None = None) -> None:
         """Delete the GL objects of one window, or of all; twice is harmless."""
         # Call it before a window is closed, to have the memory back at once.
         address = None if window is None else window.GetAddressAsString("")
@@ -710,4 +715,8 @@ def _connections_changed(mapper: EngineMapper[Any], _event: str) -> None:
     mapper._connection.changed()  # noqa: SLF001
 
 
-_OBSERVERS = {"UpdateShaderEvent": _update_shader, "StartEvent": _begin, "ModifiedEvent": _connections_changed}
+_OBSERVERS = {
+    vtkCommand.UpdateShaderEvent: _update_shader,
+    vtkCommand.StartEvent: _begin,
+    vtkCommand.ModifiedEvent: _connections_changed,
+}

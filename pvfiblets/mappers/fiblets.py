@@ -22,6 +22,8 @@ from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.query.selection.point_flags import Sampling
 
 if TYPE_CHECKING:
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.fiblets.sample_layers import OtherSamples, SampledLines
 
@@ -189,7 +191,7 @@ class FibletMapper(FilteredMapper[EngineOptions]):
             ids = ids[thinned(counts * (SIDES if self._thickness > 0.0 else 1), budget)]
         return self._readable_ids(ids, colours=colours, segments=segments)
 
-    def _readable_ids(self, ids: Any, *, colours: bool, segments: bool) -> Any:
+    def _readable_ids(self, ids: Any, *, colours: bool, segments: bool) -> vtkPolyData:
         from pvfiblets.mappers.drawn_lines import fiblet_lines
         from pvfiblets.mappers.line_data import RADIUS, tube_surface
 
@@ -258,6 +260,7 @@ class FibletMapper(FilteredMapper[EngineOptions]):
 
     def _sampled(self, renderer: vtkRenderer) -> tuple[Frame, View, Style]:
         """Return what the engine is to draw for samples of a renderer's picture."""
+        assert self.actor is not None  # a renderer draws it
         frame = frame_of(renderer, self.actor, (*renderer.GetOrigin(), *renderer.GetSize()))
         return frame, *self._wanted(renderer, frame, True)
 

@@ -24,9 +24,12 @@ from pvfiblets.mappers.frames.scene import Frame
 from pvfiblets.mappers.picking import nearest_pixel
 
 if TYPE_CHECKING:
-    import moderngl
+    from collections.abc import Sequence
 
-    from pvfiblets.engine.halos import HaloDrawStyle
+    import moderngl
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+    from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
     from pvfiblets.halos import HaloPoints, HaloStyle
 
     Drawn = HaloLines | HaloPoints
@@ -48,7 +51,7 @@ class HaloOptions(Options):
             raise ValueError(f"culling is {self.culling!r}; use 'two-phase' or None")
 
 
-def halo_renderer(ctx: moderngl.Context, drawn: Any, **options: Any) -> Any:
+def halo_renderer(ctx: moderngl.Context, drawn: Any, **options: Any) -> HaloRenderer:
     """Make the engine's renderer of lines and points with halos; the default ``renderer_factory``."""
     from pvfiblets.engine.halos import HaloRenderer
 
@@ -189,14 +192,14 @@ class HaloMapper(FilteredMapper[HaloOptions]):
         return not (self._drawn.n_segments if isinstance(self._drawn, HaloLines) else self._drawn.n_points)
 
     @property
-    def _extent(self) -> Any:
+    def _extent(self) -> Sequence[float]:
         """Bounds that hold the strips too."""
         return thickened(self._drawn.bounds, self._look.strip_width / 2.0)
 
     def _readable_points(self) -> int | None:
         return int(self._drawn.n_points)
 
-    def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> Any:
+    def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> vtkPolyData:
         from pvfiblets.mappers.drawn_lines import halo_lines, thinned
 
         lines = isinstance(self._drawn, HaloLines)

@@ -20,6 +20,7 @@ from pvfiblets.mappers.frames.windows import WindowContext, contexts_with
 
 if TYPE_CHECKING:
     import moderngl
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
 EMPTY = 0xFFFFFFFF
 DEPTH_ERROR = 3e-7  # window depth: as much as a depth buffer of 24 bits and the shader's float32 round
@@ -91,7 +92,7 @@ class Shown:
             return {name: _texels(self.context.ctx, getattr(buffer, name), area) for name in names}
 
 
-def shown_by(mapper: Any, renderer: Any = None) -> Shown | None:
+def shown_by(mapper: Any, renderer: vtkRenderer | None = None) -> Shown | None:
     """Return a mapper's last picture."""
     for context in contexts_with(mapper):
         slot = context.slots[mapper.GetAddressAsString("")]
@@ -116,7 +117,12 @@ class PixelHit:
 
 
 def nearest_pixel(
-    mapper: Any, place: tuple[float, float], read: Sequence[str], *, renderer: Any = None, tolerance: int = 0
+    mapper: Any,
+    place: tuple[float, float],
+    read: Sequence[str],
+    *,
+    renderer: vtkRenderer | None = None,
+    tolerance: int = 0,
 ) -> PixelHit | None:
     """Return the pixel nearest to a place that shows something."""
     # Of several as near the one in front is taken. The G-buffer is drawn again if it shows another view by now.
@@ -146,7 +152,7 @@ def nearest_pixel(
 
 
 def pick_area(
-    layers: Sequence[Layer], polygon: npt.ArrayLike, *, renderer: Any = None, tolerance: float = 0.0
+    layers: Sequence[Layer], polygon: npt.ArrayLike, *, renderer: vtkRenderer | None = None, tolerance: float = 0.0
 ) -> Hits | None:
     """Return the visible objects in an area of the window, pixel by pixel."""
     # Pixels in which something else is nearer, by VTK's depth of the last frame, are left out: opaque actors do hide

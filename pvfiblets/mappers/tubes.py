@@ -23,7 +23,9 @@ from pvfiblets.mappers.picking import nearest_pixel
 
 if TYPE_CHECKING:
     import moderngl
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
 
+    from pvfiblets.engine.tubes import TubeRenderer
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
 
@@ -44,7 +46,7 @@ class TubeOptions(Options):
         check_choices(self.silhouettes, self.solver, self.iterations, self.min_width, self.culling)
 
 
-def tube_renderer(ctx: moderngl.Context, tubes: Any, **options: Any) -> Any:
+def tube_renderer(ctx: moderngl.Context, tubes: Any, **options: Any) -> TubeRenderer:
     """Make the engine's renderer of spline tubes; the default ``renderer_factory``."""
     from pvfiblets.engine.tubes import TubeRenderer
 
@@ -116,7 +118,7 @@ class TubeMapper(FilteredMapper[TubeOptions]):
     def _readable_points(self) -> int | None:
         return int(self._drawn.n_segments * STEPS * SIDES)
 
-    def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> Any:
+    def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> vtkPolyData:
         from pvfiblets.mappers.drawn_lines import tube_lines
         from pvfiblets.mappers.line_data import tube_surface
 

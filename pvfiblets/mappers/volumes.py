@@ -29,7 +29,8 @@ from pvfiblets.mappers.picking import PixelHit, nearest_pixel
 if TYPE_CHECKING:
     import moderngl
 
-    from pvfiblets.engine.volumes import VolumeStyle
+    from pvfiblets.engine.effects.picture import SeenThrough
+    from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
     from pvfiblets.volumes import RaycastVolume
     from pvfiblets.volumes.interactive_quality import InteractiveQuality
     from pvfiblets.volumes.raycast_options import RaycastOptions
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 _LIGHT = "light"  # what the engine has in the place of a number at every point
 
 
-def volume_renderer(ctx: moderngl.Context, volume: Any, **options: Any) -> Any:
+def volume_renderer(ctx: moderngl.Context, volume: Any, **options: Any) -> VolumeRenderer:
     """Make the engine's renderer of a volume; the default ``renderer_factory``."""
     from pvfiblets.engine.volumes import VolumeRenderer
 
@@ -203,7 +204,7 @@ class VolumeMapper(CutMapper[Options]):
 
     def _outside(
         self, context: WindowContext, slot: Slot, renderer: vtkRenderer, viewport: tuple[int, int, int, int]
-    ) -> Any:
+    ) -> moderngl.Texture | None:
         # What VTK selects are props, each by the nearest depth that it has: rays need not end.
         if renderer.GetSelector() is not None or self.actor is None or not others_opaque(renderer, self.actor):
             return None
@@ -211,7 +212,7 @@ class VolumeMapper(CutMapper[Options]):
         found = depth.copy(viewport, moved=True)
         return depth.copy_of_window(renderer, viewport[2:]) if found is None else found
 
-    def _faint_light(self, buffer: Any) -> Any:
+    def _faint_light(self, buffer: Any) -> SeenThrough:
         """Light and peaks that hardly show are not looked at."""
         from pvfiblets.engine.effects.picture import FAINTEST, SeenThrough
 
@@ -236,8 +237,8 @@ class VolumeMapper(CutMapper[Options]):
         if self.coarser is not None and in_motion(renderer):
             casting = self.coarser.applied_to(casting)
         shone = self.shaded if casting.mode == "composite" else casting.layered and self.lit_surfaces
-        lit = shone and self.actor is not None
-        return VolumeStyle(casting=casting, shading=shading_of(renderer, self.actor) if lit else None)
+        lit = shading_of(renderer, self.actor) if shone and self.actor is not None else None
+        return VolumeStyle(casting=casting, shading=lit)
 
 
 def _plain(casting: RaycastOptions) -> Colouring:

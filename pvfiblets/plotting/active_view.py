@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+if TYPE_CHECKING:
+    import pyvista as pv
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
 
 @contextmanager
-def active_view(plotter: Any, renderer: Any) -> Iterator[None]:
+def active_view(plotter: pv.BasePlotter, renderer: vtkRenderer) -> Iterator[None]:
     """Make one of a plotter's renderers the active one for a while."""
     renderers = plotter.renderers
     own, before = (

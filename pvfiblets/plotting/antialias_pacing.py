@@ -6,7 +6,13 @@ import asyncio
 import time
 import weakref
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from vtkmodules.vtkCommonCore import vtkCommand
+
+if TYPE_CHECKING:
+    import pyvista as pv
+    from vtkmodules.vtkRenderingCore import vtkRenderWindowInteractor
 
 __all__ = ["REST", "Pacer"]
 
@@ -26,7 +32,9 @@ class Pacer:
     pictures.
     """
 
-    def __init__(self, plotter: Any, step: Callable[[], bool], wanted: Callable[[], tuple[bool, int]]) -> None:
+    def __init__(
+        self, plotter: pv.BasePlotter, step: Callable[[], bool], wanted: Callable[[], tuple[bool, int]]
+    ) -> None:
         self._plotter = weakref.proxy(plotter)
         # says whether one is, and how many have been taken
         self._step, self._wanted = step, wanted  # draws a sample; says whether another one is wanted
@@ -68,17 +76,17 @@ class Pacer:
 
     # Timers of a window
 
-    def _ask_timer(self, interactor: Any, wait: float) -> None:
+    def _ask_timer(self, interactor: vtkRenderWindowInteractor, wait: float) -> None:
         self._stop_timer(interactor)
         if self._tag is None:
-            self._tag = interactor.AddObserver("TimerEvent", _weakly(self._heard))
+            self._tag = interactor.AddObserver(vtkCommand.TimerEvent, _weakly(self._heard))
         self._due = time.monotonic() + wait
         # PyVista calls the callbacks of `add_timer_event` at every timer's event: wait for its own timers.
         theirs = getattr(self._plotter.iren, "_timer", None)
         if theirs is None or theirs.step + 1 >= theirs.max_steps:
             self._timer = interactor.CreateOneShotTimer(max(round(1000.0 * wait), 1))
 
-    def _stop_timer(self, interactor: Any) -> None:
+    def _stop_timer(self, interactor: vtkRenderWindowInteractor) -> None:
         timer, self._timer = self._timer, None
         if timer is not None:  # of one shot or not: some toolkits repeat every timer until it is destroyed
             interactor.DestroyTimer(timer)

@@ -38,7 +38,7 @@ class _Pending:
     def __init__(self, name: str) -> None:
         self._name = name
 
-    def __get__(self, plotter: Any, owner: type) -> Any:
+    def __get__(self, plotter: pv.BasePlotter, owner: type) -> Any:
         import_module(f"pvfiblets.plotting.{HOMES[self._name]}")
         return getattr(owner if plotter is None else plotter, self._name)
 

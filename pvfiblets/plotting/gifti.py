@@ -22,13 +22,8 @@ SCANNER = 1  # NIFTI_XFORM_SCANNER_ANAT
 Array = npt.NDArray[np.float64]
 
 
-def read_surface(path: str | PathLike[str]) -> pv.PolyData:
-    """Read a surface from a file of GIFTI or FreeSurfer, such as ``lh.pial.surf.gii`` and ``lh.pial``."""
-    return placed_surface(path)[0]
-
-
 def placed_surface(path: str | PathLike[str]) -> tuple[pv.PolyData, Placed]:
-    """Return the surface in a file of GIFTI or FreeSurfer, and what places it."""
+    """Read the surface of a file such as ``lh.pial.surf.gii`` or FreeSurfer's ``lh.pial``, and what places it."""
     place = Path(path).expanduser()
     if place.name.lower().endswith(freesurfer_files.SURFACES):
         corners, triangles, footer = freesurfer_files.read_geometry(place)

@@ -20,6 +20,8 @@ from pvfiblets.plotting.page.page_scene import camera_place, page_and_actors
 from pvfiblets.plotting.viewpoints import point_camera
 
 if TYPE_CHECKING:
+    import pyvista as pv
+
     from pvfiblets.plotting.notebook_state import NotebookState
 
 _HEIGHTS = 50, 10_000
@@ -70,7 +72,9 @@ class PageView:
         None without anywidget.
     """
 
-    def __init__(self, text: str, height: int, plotter: Any, names: list[str], picture: bytes | None = None) -> None:
+    def __init__(
+        self, text: str, height: int, plotter: pv.BasePlotter, names: list[str], picture: bytes | None = None
+    ) -> None:
         self.text, self.height, self.picture = text, height, picture
         self._names, self._camera = names, plotter.renderer.camera
         self._name = f"pvfiblets-{uuid.uuid4().hex}"
@@ -160,7 +164,9 @@ class PageView:
         )
 
 
-def page_view(plotter: Any, *, title: str | None = None, height: int = 480, picture: bytes | None = None) -> PageView:
+def page_view(
+    plotter: pv.BasePlotter, *, title: str | None = None, height: int = 480, picture: bytes | None = None
+) -> PageView:
     """Return what a plotter's active renderer shows as a page in a notebook; see `FibletsComponent.page_view`."""
     from pvfiblets.page.writing import LARGEST_FILE, write_page
 
@@ -181,7 +187,7 @@ def page_view(plotter: Any, *, title: str | None = None, height: int = 480, pict
 
 
 def show(
-    plotter: Any, *, screenshot: Any = None, title: str | None = None, height: int | None = None
+    plotter: pv.BasePlotter, *, screenshot: Any = None, title: str | None = None, height: int | None = None
 ) -> PageView | Any:
     """Show a plotter in a notebook as a page: PyVista calls this for ``plotter.show(jupyter_backend="fiblets")``."""
     from PIL import Image

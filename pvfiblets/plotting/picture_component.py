@@ -9,7 +9,7 @@ import weakref
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
 
@@ -22,8 +22,11 @@ from pvfiblets.mappers.picture.antialias_refinement import Refinement
 from pvfiblets.mappers.picture.picture import DepthOfField, Picture
 from pvfiblets.plotting.antialias_pacing import Pacer
 from pvfiblets.plotting.components import register
-from pvfiblets.plotting.settings.places import OWN, Place
+from pvfiblets.plotting.settings.places import OWN, Place, Stored
 from pvfiblets.plotting.settings.settings import Setting, number
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
 TONE = ("operator", "exposure", "white")
 """Settings of :attr:`PictureComponent.tone`; the other changes of colours are attributes of their own."""
@@ -36,10 +39,10 @@ TICK = 15  # ms between pictures while the focus is on its way
 class _ToneMapping(Place):
     """A field of the active renderer's tone, which checks it."""
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         return getattr(actor._picture().tone, setting.field)  # noqa: SLF001 - of the class that it is part of
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         actor._set_tone(**{setting.field: value})  # noqa: SLF001
 
 
@@ -220,7 +223,7 @@ class PictureComponent:
 
     # Smooth edges
 
-    def follow(self, renderer: Any) -> None:
+    def follow(self, renderer: vtkRenderer) -> None:
         """Update whether a renderer shows an object of this package."""
         if renderer.GetAddressAsString("") not in partly_shown:
             self._smooth_as_set(renderer)
@@ -241,7 +244,7 @@ class PictureComponent:
         self._seconds[renderer.GetAddressAsString("")] = value
         self._smooth_as_set(renderer)
 
-    def _smooth_as_set(self, renderer: Any) -> None:
+    def _smooth_as_set(self, renderer: vtkRenderer) -> None:
         """Apply the antialiasing of a renderer; by default, if it shows an object of this package."""
         address = renderer.GetAddressAsString("")
         value = self._antialias.get(address)
@@ -296,7 +299,7 @@ class PictureComponent:
 
     # Life cycle
 
-    def _picture(self, renderer: Any = None) -> Picture:
+    def _picture(self, renderer: vtkRenderer | None = None) -> Picture:
         """Return a renderer's, by default the active one's."""
         renderer = self._plotter.renderer if renderer is None else renderer
         address = renderer.GetAddressAsString("")

@@ -20,7 +20,7 @@ from pvfiblets.plotting.fiblets.component import Source as FibletsSource
 from pvfiblets.plotting.halos.actors import HaloLineActor, HaloPointActor
 from pvfiblets.plotting.halos.component import HaloLinesComponent, HaloPointsComponent
 from pvfiblets.plotting.halos.component import LineSource as HaloLinesSource, PointSource as HaloPointsSource
-from pvfiblets.plotting.halos.style import Threshold
+from pvfiblets.plotting.halos.settings import Threshold
 from pvfiblets.plotting.picture_component import PictureComponent
 from pvfiblets.plotting.slices.component import SlicesComponent
 from pvfiblets.plotting.slices.component import Source as SlicesSource

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    import pyvista as pv
 
 DIRECTIONS = {
     "axial": ((0, 0, 1), (0, 1, 0)),
@@ -19,13 +22,13 @@ DIRECTIONS = {
 """Direction of the camera, and the picture's upward direction (RAS+ mm)."""
 
 
-def visible_bounds(plotter: Any) -> tuple[float, ...]:
+def visible_bounds(plotter: pv.BasePlotter) -> tuple[float, ...]:
     """Return (xmin, xmax, ymin, ymax, zmin, zmax) of all visible actors, mm; from -1 to 1 where there is none."""
     found = tuple(float(end) for end in plotter.renderer.ComputeVisiblePropBounds())
     return found if all(found[k] <= found[k + 1] for k in (0, 2, 4)) else (-1.0, 1.0) * 3
 
 
-def point_camera(plotter: Any, view: str) -> None:
+def point_camera(plotter: pv.BasePlotter, view: str) -> None:
     """Look at all that is visible from one of the named directions, as near as the picture's edges allow."""
     # Nothing is rendered.
     direction, up = DIRECTIONS[view]

@@ -6,10 +6,13 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    import pyvista as pv
 
 VERTICAL_ANGLE = 45.0  # degrees; this and the distances follow Russig et al. 2020, section 4
 VIEWS = {"far": 1.0, "close": 1.0 / 3.0}
@@ -49,7 +52,7 @@ class Camera:
         """(4, 4) data coordinates to OpenGL clip coordinates."""
         return Lens.from_camera(self).model_view_projection
 
-    def aim(self, plotter: Any) -> None:
+    def aim(self, plotter: pv.BasePlotter) -> None:
         """Make a plotter look through this camera."""
         camera = plotter.camera
         camera.position, camera.focal_point, camera.up = self.eye, self.centre, (0.0, 0.0, 1.0)

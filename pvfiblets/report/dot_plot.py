@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from matplotlib.figure import Figure as Picture
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from .record import Axes, Record, StudyResult
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def in_rows(study: StudyResult, records: Sequence[Record], pair: Axes, colours: Mapping[str, str]) -> Any:
+
+def in_rows(study: StudyResult, records: Sequence[Record], pair: Axes, colours: Mapping[str, str]) -> Figure:
     """Draw a picture of two panels: a row for each record, for each of its two figures a dot."""
     sets = list(dict.fromkeys(record.data for record in records))
     titled = [(name, [record for record in records if record.data == name]) for name in sets]

@@ -14,7 +14,6 @@ import numpy.typing as npt
 Floats = npt.NDArray[np.float32]
 Mask = npt.NDArray[np.bool_]
 
-BLENDINGS = ("over", "add")
 TINY = 1e-38
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
 from pvfiblets.codec.jit import kernel, parallel_kernel
+from pvfiblets.support.array_types import Float32s, Float64s, Int64s
 
 
 @kernel
@@ -34,7 +34,7 @@ def _mix(value: float, other: float, share: float) -> float:
 
 
 @kernel
-def _add_noise(bright: Any, noise: float, seed: int, k: int) -> None:
+def _add_noise(bright: Float32s, noise: float, seed: int, k: int) -> None:
     """Add noise to slice k."""
     n = len(bright)
     for j in range(n):
@@ -45,10 +45,8 @@ def _add_noise(bright: Any, noise: float, seed: int, k: int) -> None:
 
 
 @parallel_kernel
-def draw_vessels(
-    segments: Any, which: Any, offsets: Any, half: float, spacing: float, edge: float, noise: float, seed: int,
-    begin: int, out: Any,
-) -> None:  # fmt: skip
+def draw_vessels(segments: Float64s, which: Int64s, offsets: Int64s, half: float, spacing: float, edge: float,
+                 noise: float, seed: int, begin: int, out: Float32s) -> None:  # fmt: skip
     """Draw cones with round ends; where several overlap, the brightest shows."""
     n = out.shape[1]
     for each in numba.prange(len(out)):
@@ -83,7 +81,7 @@ def draw_vessels(
 
 @parallel_kernel
 def draw_head(
-    waves: Any, half: float, spacing: float, edge: float, noise: float, seed: int, begin: int, out: Any
+    waves: Float64s, half: float, spacing: float, edge: float, noise: float, seed: int, begin: int, out: Float32s
 ) -> None:
     """Draw shells around the middle, the outer ones first."""
     n = out.shape[1]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.codec.jit import kernel, parallel_kernel
+from pvfiblets.support.array_types import Float32s
 
 LARGEST_DEPTH = 24.0 * np.log(2.0)  # as of transfer.py, which loads this module only when it is needed
 SPENT = 40.0  # optical depth that no visible light passes: exp(-40) is 4e-18
@@ -75,16 +75,8 @@ def _depths(alpha: Array, places: Array) -> Array:
 
 
 @parallel_kernel
-def _pairs(
-    rgba: Array,
-    units: float,
-    thin: Array,
-    thin_weights: Array,
-    graded: Array,
-    graded_weights: Array,
-    whole: Array,
-    out: Any,
-) -> None:
+def _pairs(rgba: Array, units: float, thin: Array, thin_weights: Array, graded: Array, graded_weights: Array,
+           whole: Array, out: Float32s) -> None:  # fmt: skip
     """Fill the table by how many pieces lie between front and back: how long each then is does not depend on where."""
     n = len(rgba)
     for apart in numba.prange(n):

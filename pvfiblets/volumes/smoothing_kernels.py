@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numba
 import numpy as np
 
 from pvfiblets.codec.jit import parallel_kernel
+from pvfiblets.support.array_types import Float32s, Float64s
 
 STRIP = 512  # numbers of a row that are summed together: 4 KB, which stay in the cache
 
 
 @parallel_kernel
-def along(values: Any, weights: Any, out: Any) -> None:
+def along(values: Float32s, weights: Float64s, out: Float32s) -> None:
     """Filter the middle axis of a contiguous float32 array, ends repeated; sums are float64."""
     before, n, after = values.shape
     reach = len(weights) // 2

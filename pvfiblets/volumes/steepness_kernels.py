@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.codec.jit import kernel, parallel_kernel
+from pvfiblets.support.array_types import Float32s, Float64s
 
 LEAST = 0.25  # entries: the lowest tent that is tried
 
@@ -22,7 +22,7 @@ def tents(table: npt.NDArray[np.float32], off: float) -> npt.NDArray[np.float64]
 
 
 @kernel
-def _half(table: Any, front: float, back: float, light: Any) -> None:
+def _half(table: Float32s, front: float, back: float, light: Float64s) -> None:
     """Light of half a step between two values: a whole one's mean colour, and the root of what that leaves."""
     last = len(table) - 1
     front, back = min(max(front, 0.0), float(last)), min(max(back, 0.0), float(last))
@@ -40,7 +40,7 @@ def _half(table: Any, front: float, back: float, light: Any) -> None:
 
 
 @kernel
-def _by_way_of(table: Any, front: float, middle: float, back: float, light: Any, behind: Any) -> None:
+def _by_way_of(table: Float32s, front: float, middle: float, back: float, light: Float64s, behind: Float64s) -> None:
     """Light of two half steps."""
     _half(table, front, middle, light)
     _half(table, middle, back, behind)
@@ -50,7 +50,7 @@ def _by_way_of(table: Any, front: float, middle: float, back: float, light: Any,
 
 
 @parallel_kernel
-def _tents(table: Any, off: float, out: Any) -> None:
+def _tents(table: Float32s, off: float, out: Float64s) -> None:
     n = len(table) - 1
     for i in numba.prange(n):
         chord, light, behind = np.empty(4), np.empty(4), np.empty(4)

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.web.scene.files.loading import Cancelled, Watch
 from pvfiblets.web.session.document import LINES
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.web.app import Explorer
+    from pvfiblets.web.session.document import Layer
 
 
 class Actions:
     """Some of an application's actions."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         self._app = app  # whose scene and page these act on
 
     def refresh(self) -> None:
@@ -27,7 +32,7 @@ class LineActions(Actions):
     """Actions on the chosen layer of lines."""
 
     @property
-    def _layer(self) -> Any:
+    def _layer(self) -> Layer:
         """The chosen layer, which must be of lines."""
         page = self._app.page
         if not page.chosen or page.chosen_kind not in LINES:
@@ -35,7 +40,7 @@ class LineActions(Actions):
         return self._app.scene.layer(page.chosen)
 
     async def _beside(
-        self, layer: Any, fiblets: Any, work: Callable[[Watch], Any], what: str, *, cancelled: str, again: str
+        self, layer: Layer, fiblets: FibletSet, work: Callable[[Watch], Any], what: str, *, cancelled: str, again: str
     ) -> Any:
         """Do work on a layer's streamlines beside everything else; None if it was cancelled."""
         app = self._app

@@ -312,13 +312,14 @@ class Explorer(TrameApp):
     def set_number(self, layer_id: str, name: str, text: str) -> None:
         """Set a property to a number that was typed."""
         described = self._property(layer_id, name)
-        value = describe.typed(text, name, optional=described["optional"])
+        read = describe.typed_or_none if described["optional"] else describe.typed
+        value = read(text, name)
         whole = described["whole"] and value is not None and value == int(value)
         self.set_property(layer_id, name, int(value) if whole and value is not None else value)
 
     def set_end(self, layer_id: str, name: str, end: int, text: str) -> None:
         """Set one end of a range to a number that was typed."""
-        value = describe.typed(text, name, optional=False)
+        value = describe.typed(text, name)
         ends = list(self._property(layer_id, name)["effective"])
         ends[1 if end else 0] = value
         self.set_property(layer_id, name, ends)
@@ -328,7 +329,7 @@ class Explorer(TrameApp):
         described = self._property(layer_id, name)
         value: Any = text.strip() or None
         if described["type"] == "numbers" and value is not None:
-            value = [describe.typed(part, name, optional=False) for part in text.replace(";", ",").split(",")]
+            value = [describe.typed(part, name) for part in text.replace(";", ",").split(",")]
         self.set_property(layer_id, name, value)
 
     def _property(self, layer_id: str, name: str) -> dict[str, Any]:

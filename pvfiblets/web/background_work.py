@@ -13,6 +13,7 @@ from pvfiblets.support import memory
 from pvfiblets.web.actions import Actions
 
 if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
     from pvfiblets.web.scene.files.loading import Cancel, Progress
 
     Work = Callable[[Progress, Cancel], Any]
@@ -24,7 +25,7 @@ LATEST = 0.2  # seconds between two reports of progress
 class BackgroundWork(Actions):
     """Long tasks in a thread, while the page goes on."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._stop = threading.Event()
         self._doing = ""  # name of the background work, for people

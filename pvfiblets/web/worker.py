@@ -23,6 +23,7 @@ from pvfiblets.errors import FibletsError
 from pvfiblets.web.server.log_limiter import LogLimiter
 
 if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
     from pvfiblets.web.server.options import Options
 
 KEY_HEADER = "X-Pvfiblets-Key"
@@ -125,7 +126,7 @@ def hold_to(most: int | None) -> None:
         Path("/proc/self/oom_score_adj").write_text("500", encoding="ascii")
 
 
-def make_app(options: Options, folder: Path) -> Any:
+def make_app(options: Options, folder: Path) -> Explorer:
     """Return the application of a session."""
     from pvfiblets.web.app import Explorer
     from pvfiblets.web.server.scratch import Notes

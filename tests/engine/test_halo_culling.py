@@ -14,7 +14,7 @@ from .halos import EYES, PLAIN, SIZE, assert_same, buffers, read_halos, scattere
 @pytest.fixture
 def few_are_many(monkeypatch):
     """Have culling begin where tests do not take long."""
-    monkeypatch.setattr("pvfiblets.engine.hit_target.LEAST_SEGMENTS", 500)
+    monkeypatch.setattr("pvfiblets.engine.hit_drawable.LEAST_SEGMENTS", 500)
 
 
 def crowd(kind):

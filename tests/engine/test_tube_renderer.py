@@ -209,7 +209,7 @@ def test_discarding_shows_nothing_and_takes_silhouettes_alone(gl, tubes, view):
 @pytest.fixture
 def few_are_many(monkeypatch):
     """Have culling begin where tests do not take long."""
-    monkeypatch.setattr("pvfiblets.engine.hit_target.LEAST_SEGMENTS", 3000)
+    monkeypatch.setattr("pvfiblets.engine.hit_drawable.LEAST_SEGMENTS", 3000)
 
 
 @pytest.mark.usefixtures("few_are_many")

@@ -140,11 +140,11 @@ def _labels(path: Path) -> None:
 
 
 def _surface(path: Path) -> None:
-    from pvfiblets.plotting.gifti import read_surface
+    from pvfiblets.plotting.gifti import placed_surface
     from pvfiblets.volumes.freesurfer_files import SURFACES, read_annotation, read_numbers
 
     if path.name.endswith(SURFACES):
-        assert np.isfinite(read_surface(path).points).all()
+        assert np.isfinite(placed_surface(path)[0].points).all()
     elif path.suffix == ".annot":
         labels, colours = read_annotation(path)
         assert len(labels) == len(colours)

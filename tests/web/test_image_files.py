@@ -15,7 +15,7 @@ from nibabel.gifti import GiftiDataArray, GiftiImage, GiftiLabel, GiftiLabelTabl
 
 import pvfiblets
 from pvfiblets.errors import FormatError
-from pvfiblets.plotting.gifti import read_surface, with_vertex_values
+from pvfiblets.plotting.gifti import placed_surface, with_vertex_values
 from pvfiblets.slices.image import as_slice_image
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.volumes import RaycastVolume
@@ -193,13 +193,13 @@ def test_a_surface_of_freesurfer_opens_with_its_annotation(views, tmp_path):
 
 
 def test_what_is_wrong_with_gifti_is_said(tmp_path):
-    ball = read_surface(tmp_path / surface(tmp_path))
+    ball = placed_surface(tmp_path / surface(tmp_path))[0]
     assert ball.n_points == BALL.n_points
     labels(tmp_path, "few.label.gii", NUMBERS[:-2])
     with pytest.raises(FormatError, match="160 vertices.*162"):
         with_vertex_values(ball, tmp_path / "few.label.gii")
     with pytest.raises(FormatError, match="0 sets of points"):
-        read_surface(tmp_path / "few.label.gii")
+        placed_surface(tmp_path / "few.label.gii")
     with pytest.raises(FormatError, match="no numbers of vertices"):
         with_vertex_values(ball, tmp_path / "lh.pial.surf.gii")
     whole = (tmp_path / "lh.pial.surf.gii").read_bytes()
@@ -210,10 +210,10 @@ def test_what_is_wrong_with_gifti_is_said(tmp_path):
     faces = GiftiDataArray(np.array([[0, 1, 2]], np.int32), "NIFTI_INTENT_TRIANGLE")
     saved(tmp_path, "nan.gii", points, faces)
     with pytest.raises(FormatError, match="finite mm"):
-        read_surface(tmp_path / "nan.gii")
+        placed_surface(tmp_path / "nan.gii")
     for name in ("half.gii", "none.gii", "words.gii"):
         with pytest.raises(FormatError, match="GIFTI"):
-            read_surface(tmp_path / name)
+            placed_surface(tmp_path / name)
         with pytest.raises((FormatError, ValueError)):
             Files(tmp_path).load(Source(name))
 

@@ -90,7 +90,7 @@ def volumes(scene):
     image["height"] = image.points[:, 1].astype(np.float32)
     image.save(scene.root / "height.vti")
     scene.open("height.vti")
-    _, demo = scene.add_demo(4, 8)
+    _, demo = scene.add_loaded_demo(scene.load_demo(4, 8))
     names = ("head.nii.gz", "atlas.nii.gz", "height.vti")
     wanted = [*({"volume": {"path": name}} for name in names), {"volume": {"demo": "head", "size": 8}}]
     for layer in scene.layers:
@@ -212,7 +212,7 @@ def test_no_file_is_called_as_what_the_script_uses(scene, folder, lines):
 
 
 def test_a_script_can_be_read_and_makes_demos(scene):
-    tracts, head = scene.add_demo(50, 8)
+    tracts, head = scene.add_loaded_demo(scene.load_demo(50, 8))
     assert tracts.visible
     assert not head.visible
     script = as_script(scene)

@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets.web.panels import sliders
 from pvfiblets.web.panels.controls import axis_of, controls, moved
-from pvfiblets.web.panels.describe import typed
+from pvfiblets.web.panels.describe import typed, typed_or_none
 from pvfiblets.web.panels.sliders import SlideActions
 from pvfiblets.web.panels.tabs.filter_regions import condition, flat
 from tests.web.desk import Desk
@@ -126,12 +126,12 @@ def test_planes_move_along_their_normal_and_numbers_are_typed_with_units():
     assert moved(plane, "position", 7.0)["origin"] == [1.0, 7.0, 3.0]
     assert axis_of([0.0, -3.0, 0.0]) == "y"
     assert axis_of([1.0, 1.0, 0.0]) == ""
-    assert typed("1.5", "x", optional=False) == 1.5
-    assert typed(" 1,5 mm", "x", optional=False) == 1.5
-    assert typed("", "x", optional=True) is None
+    assert typed("1.5", "x") == 1.5
+    assert typed(" 1,5 mm", "x") == 1.5
+    assert typed_or_none("", "x") is None
     for text in ("", "nan", "inf", "two"):
         with pytest.raises(ValueError, match="is not a number"):
-            typed(text, "x", optional=False)
+            typed(text, "x")
     from xml.etree import ElementTree as ET
 
     from pvfiblets.web.panels.charts import profile_chart

@@ -9,6 +9,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...support.array_types import Int64s, UInt8s
 from ..direction_codebook import cap_ratios, directions, quaternions
 from ..jit import parallel_kernel
 from ..kernels import beam_kernels, direction_kernels, lattice_kernels, nearest, turn_kernels
@@ -95,7 +96,7 @@ class CompiledCoder:
 
 
 @parallel_kernel
-def _gather(codes: Any, slots: Any, which: Any, code_at: Any, packed: Any) -> None:
+def _gather(codes: UInt8s, slots: Int64s, which: Int64s, code_at: Int64s, packed: UInt8s) -> None:
     for w in numba.prange(len(which)):
         slot = which[w]
         first, at = slots[slot, 0], code_at[slot]

@@ -9,6 +9,7 @@ import numba
 import numpy as np
 
 from ...streamlines import Streamlines
+from ...support.array_types import Bools, Float64s, Floats, Int64s
 from ..jit import kernel, parallel_kernel
 
 
@@ -63,7 +64,7 @@ def resample(streamlines: Streamlines, step: float, within: float = math.inf) ->
 
 
 @parallel_kernel
-def _arc_lengths(points: Any, offsets: Any, arc: Any) -> None:
+def _arc_lengths(points: Floats, offsets: Int64s, arc: Float64s) -> None:
     for s in numba.prange(len(offsets) - 1):
         sum_ = 0.0
         for i in range(offsets[s] + 1, offsets[s + 1]):
@@ -80,7 +81,7 @@ def _owners(offsets: Any, points: Any) -> Any:
 
 
 @kernel
-def _at(points: Any, i: int, weight: float, found: Any) -> None:
+def _at(points: Floats, i: int, weight: float, found: Float64s) -> None:
     for axis in range(3):
         found[axis] = np.float64(points[i, axis])
         if weight > 0.0:
@@ -88,7 +89,7 @@ def _at(points: Any, i: int, weight: float, found: Any) -> None:
 
 
 @kernel
-def _away(points: Any, i: int, a: Any, b: Any) -> float:
+def _away(points: Floats, i: int, a: Float64s, b: Float64s) -> float:
     """Squared distance of a given point from the segment ``ab``."""
     squares = along = 0.0
     for axis in range(3):
@@ -102,7 +103,9 @@ def _away(points: Any, i: int, a: Any, b: Any) -> float:
 
 
 @kernel
-def _keep_between(points: Any, low: Any, weight: Any, m: int, within: float, stack: Any, kept: Any) -> None:
+def _keep_between(
+    points: Floats, low: Int64s, weight: Float64s, m: int, within: float, stack: Int64s, kept: Bools
+) -> None:
     """Mark the given points between new points ``m`` and ``m + 1`` that chords pass farther away than that."""
     first = low[m] + 1
     last = low[m + 1] - 1 if weight[m + 1] == 0.0 else low[m + 1]
@@ -135,7 +138,9 @@ def _keep_between(points: Any, low: Any, weight: Any, m: int, within: float, sta
 
 
 @parallel_kernel
-def _keep_corners(points: Any, offsets: Any, fresh: Any, low: Any, weight: Any, within: float, kept: Any) -> None:
+def _keep_corners(
+    points: Floats, offsets: Int64s, fresh: Int64s, low: Int64s, weight: Float64s, within: float, kept: Bools
+) -> None:
     for s in numba.prange(len(fresh) - 1):
         stack = np.empty((offsets[s + 1] - offsets[s], 2), np.int64)
         for m in range(fresh[s], fresh[s + 1] - 1):
@@ -143,7 +148,7 @@ def _keep_corners(points: Any, offsets: Any, fresh: Any, low: Any, weight: Any, 
 
 
 @parallel_kernel
-def _locate(arc: Any, offsets: Any, fresh: Any, step: float, low: Any, weight: Any) -> None:
+def _locate(arc: Float64s, offsets: Int64s, fresh: Int64s, step: float, low: Int64s, weight: Float64s) -> None:
     """Segment that each new point lies in, and how far along it."""
     for s in numba.prange(len(offsets) - 1):
         i, last = offsets[s], offsets[s + 1] - 1

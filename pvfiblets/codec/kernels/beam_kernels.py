@@ -9,11 +9,11 @@ is the one with the least sum of squares among the codings within the error boun
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
+from ...support.array_types import Float64s, Int32s, Int64s, UInt8s, UInt16s, UInt32s
 from ..jit import kernel, parallel_kernel
 from ..layout import MAX_POINTS, STEP_LEVELS
 from .capsule_kernels import capsule
@@ -37,7 +37,7 @@ BRANCH = 5  # continuations tried from each: the nearest code and four of its ne
 
 
 @kernel
-def neighbours(directions: Any) -> Any:
+def neighbours(directions: Float64s) -> UInt8s:
     """The ``BRANCH - 1`` codes nearest to each code: ``(caps, 256, BRANCH - 1)`` uint8."""
     caps = len(directions)
     found = np.zeros((caps, 256, BRANCH - 1), np.uint8)
@@ -59,9 +59,9 @@ def neighbours(directions: Any) -> Any:
 
 
 @kernel
-def _beam(
-    true: Any, n: int, step: float, cap: int, give_up: float, tables: Any, near: Any, scratch: Any, codes: Any
-) -> float:
+def _beam(true: Float64s, n: int, step: float, cap: int, give_up: float,
+          tables: tuple[Float64s, Float64s, Float64s, Int32s, UInt8s], near: UInt8s,
+          scratch: tuple[Float64s, Float64s, Float64s, UInt8s, UInt8s], codes: UInt8s) -> float:  # fmt: skip
     """Code ``true[:n]`` from the anchor ``scratch[0]``; return the sum of squared errors, inf above the error bound."""
     anchor, states, fresh, parents, chosen = scratch
     quats, dirs, ratios, starts, listed = tables
@@ -134,7 +134,7 @@ def _beam(
 
 
 @kernel
-def _follow(true: Any, n: int, step: float, cap: int, quats: Any, codes: Any, decoded: Any) -> float:
+def _follow(true: Float64s, n: int, step: float, cap: int, quats: Float64s, codes: UInt8s, decoded: Float64s) -> float:
     """Decode from the anchor in ``decoded[0]``; returns the largest squared error."""
     px, py, pz = decoded[0, 0], decoded[0, 1], decoded[0, 2]
     word = pack_direction(true[1, 0] - px, true[1, 1] - py, true[1, 2] - pz)
@@ -151,19 +151,11 @@ def _follow(true: Any, n: int, step: float, cap: int, quats: Any, codes: Any, de
 
 
 @parallel_kernel
-def encode_directions(
-    points: Any,
-    origin: Any,
-    slots: Any,
-    scale: Any,
-    top: float,
-    steps: Any,
-    promise: float,
-    bound: Any,
-    end_scale: float,
-    tables: Any,
-    out: Any,
-) -> None:
+def encode_directions(points: Float64s, origin: Float64s, slots: Int64s, scale: Float64s, top: float,
+                      steps: tuple[float, float], promise: float, bound: tuple[float, float, float], end_scale: float,
+                      tables: tuple[Float64s, Float64s, Float64s, Int32s, UInt8s],
+                      out: tuple[UInt8s, UInt32s, UInt16s, UInt8s, Float64s, UInt8s, UInt32s, UInt8s],
+) -> None:  # fmt: skip
     """Try to code every slot with direction bytes, looking ahead; see :func:`.direction_kernels.encode_directions`."""
     ok, shape, step_index, cap_index, radius, end, end_words, codes = out
     lo, hi = steps

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
+from ...support.array_types import Bools, Float64s, Int64s, UInt16s, UInt32s
 from ..capsules import MARGIN
 from ..jit import kernel, parallel_kernel
 from ..layout import END_BITS, END_LEVELS
@@ -28,6 +28,14 @@ def end_word(x: float, y: float, z: float, scale: float) -> int:
 
 
 @kernel
+def anchor_part(anchors: UInt32s, low: UInt16s, fine: bool, f: int, axis: int) -> float:
+    """One component of an anchor, in units of the grid."""
+    word = anchors[f, axis // 2]
+    q = float((word >> 16) & 0xFFFF) if axis == 1 else float(word & 0xFFFF)
+    return q * 65536.0 + float(low[f, axis]) if fine else q
+
+
+@kernel
 def end_part(word: int, axis: int) -> int:
     """One component of a word of ``ends``, in units of ``end_scale``."""
     level = (word >> (END_BITS * axis)) & _MASK
@@ -35,7 +43,7 @@ def end_part(word: int, axis: int) -> int:
 
 
 @kernel
-def _widest(points: Any, a: int, b: int, bx: float, by: float, bz: float) -> float:
+def _widest(points: Float64s, a: int, b: int, bx: float, by: float, bz: float) -> float:
     """Largest distance of ``points[a:b]`` from the segment that leads from the first of them to ``(bx, by, bz)``."""
     x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
     vx, vy, vz = bx - x0, by - y0, bz - z0
@@ -51,7 +59,7 @@ def _widest(points: Any, a: int, b: int, bx: float, by: float, bz: float) -> flo
 
 
 @kernel
-def capsule_radius(points: Any, a: int, b: int, bx: float, by: float, bz: float) -> float:
+def capsule_radius(points: Float64s, a: int, b: int, bx: float, by: float, bz: float) -> float:
     """See :func:`.capsules.capsule_radius`; of the fiblet that decodes to ``points[a:b]``."""
     ex, ey, ez = points[b - 1, 0] - bx, points[b - 1, 1] - by, points[b - 1, 2] - bz
     arc = math.sqrt(ex * ex + ey * ey + ez * ez)
@@ -62,7 +70,7 @@ def capsule_radius(points: Any, a: int, b: int, bx: float, by: float, bz: float)
 
 
 @kernel
-def capsule(decoded: Any, a: int, b: int, end: int, following: Any, end_scale: float) -> Any:
+def capsule(decoded: Float64s, a: int, b: int, end: int, following: Float64s, end_scale: float) -> tuple[float, int]:
     """Radius (mm) and word of ``ends`` of the fiblet that decodes to ``decoded[a:b]``."""
     # `following` is `(3,)`: the next fiblet's decoded anchor, mm, read unless `end` says that the fiblet ends its
     # streamline; the word is 0 where it does not.
@@ -77,7 +85,7 @@ def capsule(decoded: Any, a: int, b: int, end: int, following: Any, end_scale: f
 
 
 @parallel_kernel
-def leaving(points: Any, starts: Any, ends: Any, radius: Any) -> Any:
+def leaving(points: Float64s, starts: Int64s, ends: Float64s, radius: Float64s) -> Bools:
     """``(m,)`` bool: fiblets with a point outside of the capsule."""
     # `points` are decoded points `(n, 3)` float64; fiblet `f` has those from `starts[f]` to `starts[f + 1]`, and its
     # capsule leads from the first of them to `ends[f]` with `radius[f]`, mm.

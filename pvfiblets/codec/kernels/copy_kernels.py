@@ -7,19 +7,17 @@ begin among the fiblets of the whole result. ``out`` holds the chunk's rows only
 
 from __future__ import annotations
 
-from typing import Any
-
 import numba
 import numpy as np
 
+from ...support.array_types import Int64s, UInt8s, UInt16s, UInt32s
 from ..jit import parallel_kernel
 from ..layout import PAGE_BITS
 
 
 @parallel_kernel
-def copy_anchors(
-    anchors: Any, low: Any, fine: bool, first: Any, which: Any, shift: Any, at: Any, rank: int, pages: Any, out: Any
-) -> None:
+def copy_anchors(anchors: UInt32s, low: UInt16s, fine: bool, first: Int64s, which: Int64s, shift: Int64s, at: Int64s,
+                 rank: int, pages: Int64s, out: UInt32s) -> None:  # fmt: skip
     """Anchors moved by ``shift`` ``(n, 3) int64`` whole units; with ``fine`` the upper halves of 32-bit anchors."""
     # `rank` is that of the first copy, `pages` the result's page table.
     for m in numba.prange(len(which)):
@@ -40,7 +38,7 @@ def copy_anchors(
 
 
 @parallel_kernel
-def copy_anchors_low(low: Any, first: Any, which: Any, shift: Any, at: Any, out: Any) -> None:
+def copy_anchors_low(low: UInt16s, first: Int64s, which: Int64s, shift: Int64s, at: Int64s, out: UInt16s) -> None:
     """Lower halves of moved 32-bit anchors."""
     for m in numba.prange(len(which)):
         begin = first[which[m]]
@@ -50,9 +48,8 @@ def copy_anchors_low(low: Any, first: Any, which: Any, shift: Any, at: Any, out:
 
 
 @parallel_kernel
-def copy_decoding(
-    decoding: Any, within: Any, first: Any, which: Any, at: Any, codes_at: Any, points_at: Any, pages: Any, out: Any
-) -> None:
+def copy_decoding(decoding: UInt32s, within: Int64s, first: Int64s, which: Int64s, at: Int64s, codes_at: Int64s,
+                  points_at: Int64s, pages: Int64s, out: UInt32s) -> None:  # fmt: skip
     """Decoding words that point to the copies' own codes and points."""
     # `within` is `(n_fiblets, 2) int64`: code byte and point at which each of the pool's fiblets starts, counted from
     # its streamline's first; `codes_at` and `points_at` `(n,)` where the copies start in the result.
@@ -69,7 +66,7 @@ def copy_decoding(
 
 
 @parallel_kernel
-def copy_reach(reach: Any, first: Any, which: Any, at: Any, out: Any) -> None:
+def copy_reach(reach: UInt16s, first: Int64s, which: Int64s, at: Int64s, out: UInt16s) -> None:
     """Copy the originals' radii."""
     for m in numba.prange(len(which)):
         begin = first[which[m]]
@@ -78,7 +75,7 @@ def copy_reach(reach: Any, first: Any, which: Any, at: Any, out: Any) -> None:
 
 
 @parallel_kernel
-def copy_codes(codes: Any, start: Any, which: Any, codes_at: Any, out: Any) -> None:
+def copy_codes(codes: UInt8s, start: Int64s, which: Int64s, codes_at: Int64s, out: UInt8s) -> None:
     """Copy the originals' codes; ``start`` ``(n_pool + 1,)`` is where a streamline's codes begin."""
     for m in numba.prange(len(which)):
         begin, to = start[which[m]], codes_at[m] - codes_at[0]

@@ -7,6 +7,7 @@ from typing import Any
 import numba
 import numpy as np
 
+from ...support.array_types import Float64s, Floats, Int64s, UInt8s, UInt16s, UInt32s
 from ..jit import kernel, parallel_kernel
 from ..layout import DIRECTION, PAGE_BITS, PLAIN_BYTES, STEP_LEVELS, WIDE, WIDE_HEADER
 from .direction_kernels import first_frame, turn
@@ -15,9 +16,8 @@ BLOCK = 256  # fiblets a thread decodes in one go
 
 
 @kernel
-def _decode_direction(
-    a: Any, shape: int, step: float, table: Any, codes: Any, at: int, n: int, origin: Any, p: Any
-) -> None:
+def _decode_direction(a: tuple[float, float, float], shape: int, step: float, table: Float64s, codes: UInt8s, at: int,
+                      n: int, origin: Float64s, p: Floats) -> None:  # fmt: skip
     dx, dy, dz, w, x, y, z = first_frame(shape)
     ax = a[0] + step * dx
     ay = a[1] + step * dy
@@ -33,7 +33,7 @@ def _decode_direction(
 
 
 @kernel
-def _take(codes: Any, at: int, width: int) -> Any:
+def _take(codes: UInt8s, at: int, width: int) -> np.int64:
     value = np.int64(0)
     for byte in range(width):
         value |= np.int64(codes[at + byte]) << (8 * byte)
@@ -46,9 +46,8 @@ def _signed(value: int, bits: int) -> int:
 
 
 @kernel
-def _decode_lattice(
-    a: Any, kind: int, shape: int, step: int, h: float, codes: Any, at: int, n: int, origin: Any, p: Any
-) -> None:
+def _decode_lattice(a: tuple[float, float, float], kind: int, shape: int, step: int, h: float, codes: UInt8s, at: int,
+                    n: int, origin: Float64s, p: Floats) -> None:  # fmt: skip
     if kind == WIDE:
         l0 = _signed(_take(codes, at, 4), 32)
         l1 = _signed(_take(codes, at + 4, 4), 32)
@@ -76,7 +75,9 @@ def _decode_lattice(
 
 
 @kernel
-def _decode_plain(a: Any, h: float, codes: Any, at: int, n: int, origin: Any, p: Any) -> None:
+def _decode_plain(
+    a: tuple[float, float, float], h: float, codes: UInt8s, at: int, n: int, origin: Float64s, p: Floats
+) -> None:
     k0, k1, k2 = 0, 0, 0
     for i in range(1, n):
         k0 += _signed(_take(codes, at, 4), 32)
@@ -89,8 +90,9 @@ def _decode_plain(a: Any, h: float, codes: Any, at: int, n: int, origin: Any, p:
 
 
 @kernel
-def decode_one(f: int, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any,
-               out: Any, row: int) -> int:  # fmt: skip
+def decode_one(f: int, arrays: tuple[UInt32s, UInt32s, UInt8s, Int64s], low: UInt16s, fine: bool, origin: Float64s,
+               scale: Float64s, steps: tuple[float, float, float], tables: Float64s, out: Floats,
+               row: int) -> int:  # fmt: skip
     """Decode fiblet `f` into ``out`` from `row` on, in the terms of :func:`decode`."""
     # Returns the number of its points; 0, and nothing is written, if its record points beyond the arrays.
     anchors, decoding, codes, code_base = arrays
@@ -131,18 +133,9 @@ def decode_one(f: int, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any
 
 
 @parallel_kernel
-def decode(
-    fiblets: Any,
-    destination: Any,
-    arrays: Any,
-    low: Any,
-    fine: Any,
-    origin: Any,
-    scale: Any,
-    steps: Any,
-    tables: Any,
-    out: Any,
-) -> int:
+def decode(fiblets: Int64s, destination: Int64s, arrays: tuple[UInt32s, UInt32s, UInt8s, Int64s], low: UInt16s,
+           fine: bool, origin: Float64s, scale: Float64s, steps: tuple[float, float, float], tables: Float64s,
+           out: Floats) -> int:  # fmt: skip
     """Decode fiblets into ``out``; returns how many were damaged and left out."""
     n_blocks = (len(fiblets) + BLOCK - 1) // BLOCK
     missed = np.zeros(n_blocks, np.int64)

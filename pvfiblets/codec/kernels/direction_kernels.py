@@ -8,11 +8,11 @@ Points are float32 or float64 arrays in mm; the origin is taken off in float64 a
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
+from ...support.array_types import Float64s, Int32s, Int64s, UInt8s, UInt16s, UInt32s
 from ..jit import kernel, parallel_kernel
 from ..layout import DIRECTION_SCALE, MAX_POINTS, STEP_LEVELS
 from .capsule_kernels import capsule
@@ -24,7 +24,7 @@ _CELL = CELLS / (2.0 * EXTENT)
 
 
 @parallel_kernel
-def scan(points: Any, offsets: Any, found: Any) -> None:
+def scan(points: Float64s, offsets: Int64s, found: Float64s) -> None:
     """Bounds, longest squared segment and farthest last fiblet, by thousands of streamlines."""
     # `found` is `(ceil(n_streamlines / 1024), 8)` float64: least x, y, z; greatest x, y, z; longest segment squared;
     # largest distance along an axis from the last point of a streamline to one of the last 60. A coordinate that is not
@@ -67,14 +67,14 @@ def quantise(value: float, scale: float, top: float) -> float:
 
 
 @kernel
-def anchor_of(points: Any, origin: Any, i: int, scale: Any, top: float, anchor: Any) -> None:
+def anchor_of(points: Float64s, origin: Float64s, i: int, scale: Float64s, top: float, anchor: Float64s) -> None:
     """Point ``i`` as an anchor holds it, into ``anchor``, from the origin."""
     for axis in range(3):
         anchor[axis] = scale[axis] * quantise(np.float64(points[i, axis]) - origin[axis], scale[axis], top)
 
 
 @kernel
-def take_points(points: Any, origin: Any, first: int, n: int, true: Any) -> None:
+def take_points(points: Float64s, origin: Float64s, first: int, n: int, true: Float64s) -> None:
     """Points ``first`` to ``first + n`` into ``true``, in float64 and from the origin."""
     for i in range(n):
         for axis in range(3):
@@ -82,7 +82,7 @@ def take_points(points: Any, origin: Any, first: int, n: int, true: Any) -> None
 
 
 @kernel
-def turn(w: float, x: float, y: float, z: float, t: Any) -> Any:
+def turn(w: float, x: float, y: float, z: float, t: Float64s) -> tuple[float, ...]:
     """Product of the frame ``(w, x, y, z)`` and a code's quaternion ``t``: the frame one step on."""
     return (
         w * t[0] - x * t[1] - y * t[2] - z * t[3],
@@ -110,7 +110,7 @@ def pack_direction(x: float, y: float, z: float) -> int:
 
 
 @kernel
-def first_frame(word: int) -> Any:
+def first_frame(word: int) -> tuple[float, ...]:
     """First direction and frame ``(dx, dy, dz, w, x, y, z)`` of a fiblet (the paper's ``M_0``, section 3.3.2)."""
     iu = word & 0xFFFF
     iv = (word >> 16) & 0xFFFF
@@ -141,7 +141,7 @@ def first_frame(word: int) -> Any:
 
 
 @kernel
-def _nearest(l0: float, l1: float, l2: float, ratio: float, start: Any, listed: Any, table: Any) -> int:
+def _nearest(l0: float, l1: float, l2: float, ratio: float, start: Int32s, listed: UInt8s, table: Float64s) -> int:
     """Code whose direction is nearest to (l0, l1, l2); see `nearest`."""
     n = math.sqrt(l0 * l0 + l1 * l1 + l2 * l2)
     m = ratio * n * (n + l0)
@@ -174,7 +174,9 @@ def _nearest(l0: float, l1: float, l2: float, ratio: float, start: Any, listed: 
 
 
 @kernel
-def _greedy(true: Any, n: int, step: float, cap: int, give_up: float, tables: Any, codes: Any, decoded: Any) -> float:
+def _greedy(true: Float64s, n: int, step: float, cap: int, give_up: float,
+            tables: tuple[Float64s, Float64s, Float64s, Int32s, UInt8s], codes: UInt8s,
+            decoded: Float64s) -> float:  # fmt: skip
     """Code ``true[:n]`` from the anchor in ``decoded[0]``; returns the largest squared error, inf above ``give_up``."""
     quats, dirs, ratios, starts, listed = tables
     table = quats[cap]
@@ -212,7 +214,7 @@ def _greedy(true: Any, n: int, step: float, cap: int, give_up: float, tables: An
 
 
 @kernel
-def _smallest_cap(true: Any, n: int, ratios: Any) -> int:
+def _smallest_cap(true: Float64s, n: int, ratios: Float64s) -> int:
     """Index of the smallest cap angle that holds every turn of the points."""
     least = 1.0
     for i in range(2, n):
@@ -230,7 +232,7 @@ def _smallest_cap(true: Any, n: int, ratios: Any) -> int:
 
 
 @kernel
-def _step_index(true: Any, n: int, lo: float, hi: float) -> int:
+def _step_index(true: Float64s, n: int, lo: float, hi: float) -> int:
     """Index of a fiblet's step between the file's least and greatest."""
     if hi <= lo:
         return 0
@@ -242,7 +244,7 @@ def _step_index(true: Any, n: int, lo: float, hi: float) -> int:
 
 
 @kernel
-def _apart(points: Any, origin: Any, i: int, decoded: Any) -> float:
+def _apart(points: Float64s, origin: Float64s, i: int, decoded: Float64s) -> float:
     """Distance of a decoded point (from the origin) from point ``i``."""
     x = np.float64(points[i, 0]) - origin[0] - decoded[0]
     y = np.float64(points[i, 1]) - origin[1] - decoded[1]
@@ -251,26 +253,18 @@ def _apart(points: Any, origin: Any, i: int, decoded: Any) -> float:
 
 
 @kernel
-def follows(slots: Any, end: Any, slot: int) -> Any:
+def follows(slots: Int64s, end: UInt8s, slot: int) -> tuple[bool, bool, bool]:
     """Whether a segment leads to a slot's first point, one from its last, and one on from there."""
     more = end[slot] == 0
     return slot > 0 and end[slot - 1] == 0, more, more and (slots[slot + 1, 1] > 1 or end[slot + 1] == 0)
 
 
 @parallel_kernel
-def encode_directions(
-    points: Any,
-    origin: Any,
-    slots: Any,
-    scale: Any,
-    top: float,
-    steps: Any,
-    promise: float,
-    bound: Any,
-    end_scale: float,
-    tables: Any,
-    out: Any,
-) -> None:
+def encode_directions(points: Float64s, origin: Float64s, slots: Int64s, scale: Float64s, top: float,
+                      steps: tuple[float, float], promise: float, bound: tuple[float, float, float], end_scale: float,
+                      tables: tuple[Float64s, Float64s, Float64s, Int32s, UInt8s],
+                      out: tuple[UInt8s, UInt32s, UInt16s, UInt8s, Float64s, UInt8s, UInt32s, UInt8s],
+) -> None:  # fmt: skip
     """Try to code every slot (at most 60 consecutive points) with direction bytes."""
     ok, shape, step_index, cap_index, radius, end, end_words, codes = out
     lo, hi = steps

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
+from ...support.array_types import Float64s, Floats, Int64s, UInt8s
 from ..jit import kernel, parallel_kernel
 
 
 @parallel_kernel
-def distances(true: Any, drawn: Any, single: bool, distance: Any) -> None:
+def distances(true: Floats, drawn: Float64s, single: bool, distance: Float64s) -> None:
     """Distance of every decoded point from its original."""
     for i in numba.prange(len(true)):
         square = 0.0
@@ -24,7 +24,7 @@ def distances(true: Any, drawn: Any, single: bool, distance: Any) -> None:
 
 
 @kernel
-def add_up(values: Any, weights: Any, scale: float, up: bool, histogram: Any) -> Any:
+def add_up(values: Float64s, weights: UInt8s, scale: float, up: bool, histogram: Int64s) -> tuple[float, float]:
     """Sum, by weights, and largest of some values, which are counted into a histogram."""
     total = largest = 0.0
     last = len(histogram) - 1

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
+from ...support.array_types import Float64s, Int64s, UInt8s, UInt16s, UInt32s
 from ..jit import kernel, parallel_kernel
 from ..lattice_limits import LATTICE_LIMIT, MAX_HALVINGS, RECORD_BYTES, TREE_DEPTH, TURNED_TOO_FAR
 from ..layout import DIRECTION, LATTICE8, MAX_POINTS, WIDE, WIDE_HEADER
@@ -20,7 +20,7 @@ _NODES = 1 << (TREE_DEPTH + 1)
 
 
 @kernel
-def _box(true: Any, a: int, b: int, anchor: Any, h: float, lo: Any, n: Any) -> int:
+def _box(true: Float64s, a: int, b: int, anchor: Float64s, h: float, lo: Int64s, n: Int64s) -> int:
     """Box of the lattice steps of ``true[a:b]``, into ``lo`` and ``n``; bytes per code + 8 * kind, or 0 if none."""
     for axis in range(3):
         lo[axis] = 0
@@ -67,13 +67,13 @@ def _size(found: int, count: int) -> int:
 
 
 @kernel
-def _anchor(true: Any, i: int, scale: Any, top: float, anchor: Any) -> None:
+def _anchor(true: Float64s, i: int, scale: Float64s, top: float, anchor: Float64s) -> None:
     for axis in range(3):
         anchor[axis] = scale[axis] * quantise(true[i, axis], scale[axis], top)
 
 
 @kernel
-def _turned(true: Any, a: int, b: int, edge: float, turns: Any) -> float:
+def _turned(true: Float64s, a: int, b: int, edge: float, turns: tuple[Float64s, Float64s, Float64s, bool]) -> float:
     """:func:`.turn_kernels.excess` of ``true[a:b]`` on a lattice of this edge about the anchor in ``drawn[a]``."""
     units, drawn, following, leads = turns
     for axis in range(3):
@@ -83,7 +83,9 @@ def _turned(true: Any, a: int, b: int, edge: float, turns: Any) -> float:
 
 
 @kernel
-def _halvings(true: Any, a: int, b: int, h: float, turns: Any) -> Any:
+def _halvings(
+    true: Float64s, a: int, b: int, h: float, turns: tuple[Float64s, Float64s, Float64s, bool]
+) -> tuple[int, float]:
     """Least halvings of the edge that turn no segment too far, and the excess; the least excess if none does."""
     found, least = 0, math.inf
     for halvings in range(MAX_HALVINGS + 1):
@@ -96,7 +98,9 @@ def _halvings(true: Any, a: int, b: int, h: float, turns: Any) -> Any:
 
 
 @kernel
-def _about(true: Any, a: int, b: int, total: int, scale: Any, top: float, drawn: Any, following: Any) -> bool:
+def _about(
+    true: Float64s, a: int, b: int, total: int, scale: Float64s, top: float, drawn: Float64s, following: Float64s
+) -> bool:
     """Anchors of ``true[a:b]`` and of what follows, into ``drawn[a]`` and ``following``; whether anything does."""
     _anchor(true, a, scale, top, drawn[a])
     if b < total:
@@ -105,7 +109,9 @@ def _about(true: Any, a: int, b: int, total: int, scale: Any, top: float, drawn:
 
 
 @kernel
-def _plan(true: Any, count: int, total: int, scale: Any, top: float, h: float, units: Any, cuts: Any) -> Any:
+def _plan(
+    true: Float64s, count: int, total: int, scale: Float64s, top: float, h: float, units: Float64s, cuts: UInt8s
+) -> tuple[int, int]:
     """Cheapest split by repeated halving: sizes of the pieces into ``cuts``; their number and their bytes of codes."""
     low = np.zeros(_NODES, np.int64)
     high = np.zeros(_NODES, np.int64)
@@ -167,20 +173,9 @@ def _plan(true: Any, count: int, total: int, scale: Any, top: float, h: float, u
 
 
 @parallel_kernel
-def plan_lattices(
-    points: Any,
-    origin: Any,
-    slots: Any,
-    wanted: Any,
-    end: Any,
-    scale: Any,
-    top: float,
-    h: float,
-    bound: Any,
-    pieces: Any,
-    size: Any,
-    cuts: Any,
-) -> None:
+def plan_lattices(points: Float64s, origin: Float64s, slots: Int64s, wanted: Int64s, end: UInt8s, scale: Float64s,
+                  top: float, h: float, bound: tuple[float, float, float], pieces: Int64s, size: Int64s,
+                  cuts: UInt8s) -> None:  # fmt: skip
     """Plan the slots named in ``wanted``."""
     # Fills `pieces (k,)` and `size (k,)` (bytes of codes) and, where a slot's points stand in `cuts (n_points,)`, the
     # numbers of points of its pieces.
@@ -196,13 +191,15 @@ def plan_lattices(
 
 
 @kernel
-def _put(codes: Any, at: int, value: int, width: int) -> None:
+def _put(codes: UInt8s, at: int, value: int, width: int) -> None:
     for byte in range(width):
         codes[at + byte] = (value >> (8 * byte)) & 0xFF
 
 
 @kernel
-def _encode(true: Any, a: int, b: int, h: float, codes: Any, at: int, turns: Any) -> Any:
+def _encode(
+    true: Float64s, a: int, b: int, h: float, codes: UInt8s, at: int, turns: tuple[Float64s, Float64s, Float64s, bool]
+) -> tuple[int, ...]:
     """Code one piece at ``codes[at:]``; returns kind, shape, step, cap and the number of bytes written."""
     # Its anchor stands in the second of `turns`, where its other points are filled in; the edge is halved further than
     # directions ask for as long as that costs no byte.
@@ -245,21 +242,11 @@ def _encode(true: Any, a: int, b: int, h: float, codes: Any, at: int, turns: Any
 
 
 @parallel_kernel
-def encode_lattices(
-    points: Any,
-    origin: Any,
-    slots: Any,
-    wanted: Any,
-    scale: Any,
-    top: float,
-    h: float,
-    bound: Any,
-    end_scale: float,
-    cuts: Any,
-    end: Any,
-    at: Any,
-    out: Any,
-) -> None:
+def encode_lattices(points: Float64s, origin: Float64s, slots: Int64s, wanted: Int64s, scale: Float64s, top: float,
+                    h: float, bound: tuple[float, float, float], end_scale: float, cuts: UInt8s, end: UInt8s,
+                    at: Int64s,
+                    out: tuple[UInt8s, UInt32s, UInt16s, UInt8s, UInt8s, Int64s, Int64s, Int64s, Float64s, UInt32s],
+) -> None:  # fmt: skip
     """Code the slots named in ``wanted`` as planned."""
     # `at` is `(k, 2)`: first fiblet and first code byte of each slot in the arrays of `out`: `codes`, `shape`, `step`,
     # `cap`, `kind`, `count`, `code_start`, `point_start`, `radius` and `end_words`, one row a fiblet.

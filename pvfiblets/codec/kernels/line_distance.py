@@ -9,6 +9,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...support.array_types import Float64s, Floats, Int64s
 from ..jit import kernel, parallel_kernel
 
 NEAR = 8  # segments on either side of where arc length says that the nearest one is
@@ -28,7 +29,7 @@ def line_distances(
 
 
 @kernel
-def _arc(points: Any, first: int, stop: int, arc: Any) -> None:
+def _arc(points: Floats, first: int, stop: int, arc: Float64s) -> None:
     arc[0] = 0.0
     for i in range(first + 1, stop):
         squares = 0.0
@@ -38,7 +39,7 @@ def _arc(points: Any, first: int, stop: int, arc: Any) -> None:
 
 
 @kernel
-def _away(points: Any, i: int, others: Any, j: int, k: int) -> float:
+def _away(points: Floats, i: int, others: Floats, j: int, k: int) -> float:
     """Squared distance of a point from the segment from ``others[j]`` to ``others[k]``."""
     squares = along = 0.0
     for axis in range(3):
@@ -54,7 +55,9 @@ def _away(points: Any, i: int, others: Any, j: int, k: int) -> float:
 
 
 @parallel_kernel
-def _distances(points: Any, offsets: Any, others: Any, other_offsets: Any, enough: float, found: Any) -> None:
+def _distances(
+    points: Floats, offsets: Int64s, others: Floats, other_offsets: Int64s, enough: float, found: Float64s
+) -> None:
     for s in numba.prange(len(offsets) - 1):
         first, stop = offsets[s], offsets[s + 1]
         begin, end = other_offsets[s], other_offsets[s + 1]

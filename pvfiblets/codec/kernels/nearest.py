@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from ...support.array_types import Float64s, Int32s, UInt8s
 from ..direction_codebook import CAP_DEGREES, CODES, cap_ratios, directions
 from ..jit import kernel
 
@@ -32,7 +33,7 @@ class Candidates(NamedTuple):
 
 
 @kernel
-def _direction(u: float, v: float, ratio: float) -> Any:
+def _direction(u: float, v: float, ratio: float) -> tuple[float, float, float]:
     """Direction at a point of the disc; beyond the antipode there is none, and the antipode stands in."""
     rho2 = u * u + v * v
     x = 1.0 - ratio * rho2
@@ -43,12 +44,12 @@ def _direction(u: float, v: float, ratio: float) -> Any:
 
 
 @kernel
-def _squared(a: Any, b: Any) -> float:
+def _squared(a: Float64s, b: Float64s) -> float:
     return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2
 
 
 @kernel
-def _cell(i: int, j: int, ratio: float) -> Any:
+def _cell(i: int, j: int, ratio: float) -> tuple[float, ...]:
     """Direction of a cell's middle, and the largest chord from there to one of its corners."""
     size = 2.0 * EXTENT / CELLS
     x, y, z = _direction((i + 0.5) * size - EXTENT, (j + 0.5) * size - EXTENT, ratio)
@@ -60,7 +61,7 @@ def _cell(i: int, j: int, ratio: float) -> Any:
 
 
 @kernel
-def _list_candidates(table: Any, ratio: float, start: Any, codes: Any) -> int:
+def _list_candidates(table: Float64s, ratio: float, start: Int32s, codes: UInt8s) -> int:
     tiles = CELLS // TILE
     cells = np.empty((CELLS, CELLS, 4))
     for j in range(CELLS):

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
+from ...support.array_types import Bools, Float64s, Floats, Int64s, UInt8s
 from ..jit import kernel, parallel_kernel
 from ..tangents import LEAST_SUM, ONE_POINT
 
 
 @kernel
-def direction(points: Any, i: int) -> Any:
+def direction(points: Floats, i: int) -> tuple[float, ...]:
     """Unit vector from point ``i`` to the next one and its length; zeros where it has none."""
     return unit(
         np.float64(points[i + 1, 0]) - np.float64(points[i, 0]),
@@ -23,7 +23,7 @@ def direction(points: Any, i: int) -> Any:
 
 
 @kernel
-def unit(x: float, y: float, z: float) -> Any:
+def unit(x: float, y: float, z: float) -> tuple[float, ...]:
     """Unit vector of a vector and its length; zeros where it has none."""
     largest = max(abs(x), abs(y), abs(z))
     if largest == 0.0:
@@ -34,7 +34,9 @@ def unit(x: float, y: float, z: float) -> Any:
 
 
 @parallel_kernel
-def tangent_angles(true: Any, drawn: Any, offsets: Any, firsts: Any, shortest: float, degrees: Any, uses: Any) -> None:
+def tangent_angles(
+    true: Floats, drawn: Float64s, offsets: Int64s, firsts: Bools, shortest: float, degrees: Float64s, uses: UInt8s
+) -> None:
     """Angle between true and drawn tangent at every point."""
     for s in numba.prange(len(offsets) - 1):
         ax = ay = az = bx = by = bz = 0.0  # directions of the segment before, true and drawn

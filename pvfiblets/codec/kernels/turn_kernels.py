@@ -6,10 +6,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 
+from ...support.array_types import Float64s, Int64s
 from ..jit import kernel, parallel_kernel
 from ..layout import MAX_POINTS
 from ..tangents import FIRST_SHARE, LEAST_SUM, LOOK_BACK, ONE_POINT
@@ -19,7 +19,8 @@ _MARGIN = 0.99  # for what rounding does to either side of a comparison
 
 
 @kernel
-def may_turn(points: Any, first: int, n: int, follows: Any, bound: Any, units: Any) -> None:
+def may_turn(points: Float64s, first: int, n: int, follows: tuple[bool, bool, bool], bound: tuple[float, float, float],
+             units: Float64s) -> None:  # fmt: skip
     """Directions of a slot's segments, and how far each may be turned."""
     shortest, sine, chord = bound
     one_point = shortest * ONE_POINT
@@ -65,7 +66,7 @@ def _bend(x: float, y: float, z: float, size: float, cx: float, cy: float, cz: f
 
 
 @kernel
-def _first_bend(points: Any, i: int, bound: Any) -> float:
+def _first_bend(points: Float64s, i: int, bound: tuple[float, float, float]) -> float:
     """Bend between the tangent at point ``i``, which has a segment on either side, and the segment after it."""
     one_point = bound[0] * ONE_POINT
     bx, by, bz, before = direction(points, i - 1)
@@ -82,7 +83,7 @@ def _first_bend(points: Any, i: int, bound: Any) -> float:
 
 
 @kernel
-def _next_slot(points: Any, a: int, stop: int, bound: Any) -> int:
+def _next_slot(points: Float64s, a: int, stop: int, bound: tuple[float, float, float]) -> int:
     """Return the end of the slot that begins at point ``a``, in a streamline that ends before ``stop``."""
     if stop - a <= MAX_POINTS:
         return stop
@@ -99,7 +100,9 @@ def _next_slot(points: Any, a: int, stop: int, bound: Any) -> int:
 
 
 @parallel_kernel
-def cut(points: Any, offsets: Any, bound: Any, per: Any, at: Any, slots: Any) -> None:
+def cut(
+    points: Float64s, offsets: Int64s, bound: tuple[float, float, float], per: Int64s, at: Int64s, slots: Int64s
+) -> None:
     """Cut streamlines into slots of at most 60 points."""
     # Called twice: with an empty `slots`, to fill `per (n_streamlines,)` with the number of slots of each streamline;
     # and with `at (n_streamlines,)`, the first slot of each, to fill `slots (m, 2)` with first points and counts.
@@ -116,7 +119,7 @@ def cut(points: Any, offsets: Any, bound: Any, per: Any, at: Any, slots: Any) ->
 
 
 @kernel
-def excess(units: Any, a: int, b: int, decoded: Any, following: Any, leads: bool) -> float:
+def excess(units: Float64s, a: int, b: int, decoded: Float64s, following: Float64s, leads: bool) -> float:
     """Greatest ratio of a turn to its bound, over the segments that lead on from the fiblet ``decoded[a:b]``."""
     # `leads`: a segment leads from the last of them to `following`.
     worst = 0.0
@@ -136,7 +139,7 @@ def excess(units: Any, a: int, b: int, decoded: Any, following: Any, leads: bool
 
 
 @kernel
-def _cosine(points: Any, i: int, one_point: float) -> Any:
+def _cosine(points: Float64s, i: int, one_point: float) -> tuple[float, float]:
     """Cosine of the turn at point ``i``, and the length of the segment from it on."""
     # Where a segment has no direction, that of a turn whose tangent's sum is as long: that of one unit vector.
     ax, ay, az, before = direction(points, i - 1)
@@ -147,7 +150,8 @@ def _cosine(points: Any, i: int, one_point: float) -> Any:
 
 
 @kernel
-def within(points: Any, first: int, n: int, follows: Any, bound: Any, step: float, apart: float, least: float) -> bool:
+def within(points: Float64s, first: int, n: int, follows: tuple[bool, bool, bool], bound: tuple[float, float, float],
+           step: float, apart: float, least: float) -> bool:  # fmt: skip
     """Whether no segment of a slot can be turned too far: told of nearly all direction codes by few figures."""
     # `apart` is the largest distance of a decoded point from its original, the next slot's first included. All segments
     # drawn have the length `step`, but for the one to the next slot. Turns within the slot have cosines of at least

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import EngineError
+
+if TYPE_CHECKING:
+    import moderngl
 
 # Some drivers give exactly the requested version. Every pipeline needs 3.3 at least; 3.2, which VTK itself needs, is
 # tried for the sake of a clear error.
 VERSIONS = (460, 450, 430, 410, 330, 320)
 
 
-def bare_context() -> Any:
+def bare_context() -> moderngl.Context:
     """Return a moderngl context without a window: through EGL where there is one, else as the system has it."""
     import moderngl
 

@@ -12,7 +12,8 @@ from ...halos.geometry import HaloLines, HaloPoints
 from ..gbuffer import EMPTY, GBuffer
 from ..gl.bindings import HALOS
 from ..gl.vertex_pulling import PulledShapes
-from ..hit_target import HitDrawable, HitTarget
+from ..hit_drawable import HitDrawable
+from ..hit_target import HitTarget
 from ..lattice import TOP
 from ..regions.region_cut import RegionCut
 from ..view import Style, View

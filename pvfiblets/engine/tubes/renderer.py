@@ -10,7 +10,8 @@ from ...tubes.curves import MIDDLE
 from ..errors import EngineError
 from ..gbuffer import GBuffer
 from ..gl.bindings import TUBES
-from ..hit_target import HitDrawable, HitTarget
+from ..hit_drawable import HitDrawable
+from ..hit_target import HitTarget
 from ..lattice import TOP
 from ..regions.region_cut import RegionCut
 from ..view import View

@@ -83,7 +83,7 @@ class Sums:
             found[name] = self.held.texture if here and self.held is not None else self._blank.named(name, 1, dtype)
         return found
 
-    def _depth(self, draw: Draw) -> Any:
+    def _depth(self, draw: Draw) -> moderngl.Texture | None:
         """Return the depth of the scene's opaque objects, or None if it cannot be read."""
         if self._outside is None:
             self._outside = OutsideDepth(self._ctx)

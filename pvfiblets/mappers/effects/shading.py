@@ -21,6 +21,7 @@ from pvfiblets.mappers.frames.scene import pixel_scale
 
 if TYPE_CHECKING:
     import moderngl
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
     from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, OutlinePass, Projection
 
@@ -297,18 +298,18 @@ def distances(draw: Draw) -> tuple[float, float]:
     return max(0.0, float(away.min())), max(0.0, float(away.max()))
 
 
-def background(renderer: Any) -> tuple[Colour, Colour]:
+def background(renderer: vtkRenderer) -> tuple[Colour, Colour]:
     """Return the colours of a renderer's background at its lower and its upper edge."""
-    lower = tuple(renderer.GetBackground())
-    return lower, tuple(renderer.GetBackground2()) if renderer.GetGradientBackground() else lower
+    lower = renderer.GetBackground()
+    return lower, renderer.GetBackground2() if renderer.GetGradientBackground() else lower
 
 
-def is_light(renderer: Any) -> bool:
+def is_light(renderer: vtkRenderer) -> bool:
     """Return True if a renderer's background is light."""
     return float(np.mean(background(renderer), axis=0) @ LUMINANCE) > 0.5
 
 
-def ink_on(renderer: Any) -> Colour:
+def ink_on(renderer: vtkRenderer | None) -> Colour:
     """Return black on a light background, white on a dark one; black without a renderer."""
     return (0.0, 0.0, 0.0) if renderer is None or is_light(renderer) else (1.0, 1.0, 1.0)
 

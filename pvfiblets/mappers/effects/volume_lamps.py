@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.mappers.effects.shader_effects import ShaderEffect
-from pvfiblets.mappers.frames.scene import to_array
+from pvfiblets.mappers.frames.scene import items_of, to_array
 
 if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
+
     from pvfiblets.engine.volumes.shading import Lamp, Shading
 
 
@@ -19,13 +21,12 @@ class OwnLight(ShaderEffect):
     features = frozenset({"own_light"})
 
 
-def shading_of(renderer: Any, actor: Any) -> Shading:
+def shading_of(renderer: vtkRenderer, actor: vtkActor) -> Shading:
     """Return the lights of a renderer that are on, as an actor's property reflects them."""
     from pvfiblets.engine.volumes.shading import Shading
 
-    lights = renderer.GetLights()
-    every = [lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems())]
-    lamps = tuple(_lamp(light) for light in every if light.GetSwitch() and light.GetIntensity() > 0.0)
+    on = [light for light in items_of(renderer.GetLights()) if light.GetSwitch() and light.GetIntensity() > 0.0]
+    lamps = tuple(_lamp(light) for light in on)
     camera, reflection = renderer.GetActiveCamera(), actor.GetProperty()
     if camera.GetParallelProjection():
         eye = (*(-np.array(camera.GetDirectionOfProjection())).tolist(), 0.0)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from vtkmodules.vtkCommonCore import vtkWeakReference
+from vtkmodules.vtkCommonCore import vtkCommand, vtkWeakReference
 from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
 from pvfiblets.mappers.frames.scene import renderers_of
@@ -57,10 +55,10 @@ class ActiveRenderer:
         self._watched[address] = vtkWeakReference()
         self._watched[address].Set(renderer)
         started = self._started
-        renderer.AddObserver("StartEvent", lambda caller, _event: started.Set(caller))
+        renderer.AddObserver(vtkCommand.StartEvent, lambda caller, _event: started.Set(caller))
 
 
-def _fits(renderer: Any, viewport: tuple[int, int, int, int]) -> bool:
+def _fits(renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> bool:
     """Whether a renderer's own viewport is the one in use."""
     origin = renderer.GetOrigin()
     size = renderer.GetSize()

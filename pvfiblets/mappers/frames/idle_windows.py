@@ -9,11 +9,14 @@ import time
 import warnings
 import weakref
 from contextlib import ExitStack, nullcontext
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from pvfiblets.mappers.frames.scene import keep_views
 from pvfiblets.mappers.frames.scene_state import without_multisamples
 from pvfiblets.support.progress_bar import progress_bar
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 __all__ = ["Finishing", "finish", "picture_of", "refine", "shown_pictures"]
 
@@ -24,7 +27,7 @@ shown_pictures: weakref.WeakSet[Any] = weakref.WeakSet()
 """All `pvfiblets.mappers.picture.picture.Picture` that there are."""
 
 
-def refine(window: Any, *, cheaply: bool = False) -> bool:
+def refine(window: vtkRenderWindow, *, cheaply: bool = False) -> bool:
     """Draw one more frame of the pictures of a window that want more samples or parts, or what it takes.
 
     Nothing if none does; return whether another one is wanted. `cheaply` leaves VTK's multisampling out where it
@@ -46,7 +49,7 @@ def refine(window: Any, *, cheaply: bool = False) -> bool:
     return bool(_unfinished(window))
 
 
-def finish(window: Any) -> None:
+def finish(window: vtkRenderWindow) -> None:
     """Draw all frames that the pictures of a window want."""
     wanting = _unfinished(window)
     total = sum(picture.refinement.samples for picture in wanting)
@@ -109,13 +112,13 @@ class Finishing:
             warnings.warn(f"stopped after {self._done} of {self._total} samples", RuntimeWarning, stacklevel=2)
 
 
-def _unfinished(window: Any) -> list[Any]:
+def _unfinished(window: vtkRenderWindow) -> list[Any]:
     address = window.GetAddressAsString("")
     found = [picture for picture in shown_pictures if picture.unfinished]
     return [picture for picture in found if picture.renderer.GetRenderWindow().GetAddressAsString("") == address]
 
 
-def picture_of(renderer: Any) -> Any:
+def picture_of(renderer: vtkRenderer) -> Any:
     """Return what is done to a renderer's picture; None if nothing is."""
     address = renderer.GetAddressAsString("")
     of = [(picture, picture.renderer) for picture in shown_pictures]

@@ -9,14 +9,17 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING
 
 from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.mappers.frames.idle_windows import picture_of
 from pvfiblets.mappers.frames.scene import actors_in, items_of
 
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
-def draw_in_pieces(window: Any, *, refining: bool = False) -> Iterator[None]:
+
+def draw_in_pieces(window: vtkRenderWindow, *, refining: bool = False) -> Iterator[None]:
     """Draw the fiblets of a window's next frame, and yield after each piece."""
     # Scenes that cannot be drawn in pieces, as on a GPU, are skipped, and so are frames that are not ordinary: an
     # enlarged one, or one with a render pass.
@@ -46,7 +49,7 @@ def draw_in_pieces(window: Any, *, refining: bool = False) -> Iterator[None]:
                 began = time.perf_counter()
 
 
-def _mappers(renderer: Any) -> Iterator[FibletMapper]:
+def _mappers(renderer: vtkRenderer) -> Iterator[FibletMapper]:
     """Yield the visible ones of a renderer."""
     for prop in items_of(renderer.GetViewProps()):
         for actor in actors_in(prop) if prop.GetVisibility() else ():

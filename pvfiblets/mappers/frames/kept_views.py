@@ -10,12 +10,17 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable, Hashable, Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from vtkmodules.vtkCommonCore import vtkCommand
 
 from pvfiblets.mappers.frames.idle_windows import shown_pictures
 from pvfiblets.mappers.frames.scene import in_motion, items_of, keep_views
 from pvfiblets.mappers.frames.scene_state import scene_state
 from pvfiblets.mappers.frames.windows import weak
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 _LETTERS = ("GetTextProperty", "GetTitleTextProperty", "GetLabelTextProperty", "GetAnnotationTextProperty")
 _PARTS = (*_LETTERS, "GetLookupTable", "GetMapper", "GetInput", "GetProperty")
@@ -24,7 +29,7 @@ _PARTS = (*_LETTERS, "GetLookupTable", "GetMapper", "GetInput", "GetProperty")
 class KeptViews:
     """Has the views of a window drawn only in frames in which they have changed."""
 
-    def __init__(self, window: Any, renderers: Iterable[Any], prepare: Callable[[], None]) -> None:
+    def __init__(self, window: vtkRenderWindow, renderers: Iterable[Any], prepare: Callable[[], None]) -> None:
         self._renderers = list(renderers)  # views that do not overlap. Others of the window are drawn in every frame.
         self._prepare = prepare  # called before each frame, to update views before their states are compared
         self._shown: dict[str, tuple[Hashable, bool]] = {}
@@ -42,7 +47,7 @@ class KeptViews:
             if kept is not None:
                 (kept._start if event == "StartEvent" else kept._end)()  # noqa: SLF001 - its own
 
-        self._tags = [window.AddObserver(event, call) for event in ("StartEvent", "EndEvent")]
+        self._tags = [window.AddObserver(event, call) for event in (vtkCommand.StartEvent, vtkCommand.EndEvent)]
 
     def stop(self) -> None:
         """Draw all views in every frame again; twice is harmless."""
@@ -56,7 +61,7 @@ class KeptViews:
         self._put_back()
         self._shown.clear()
 
-    def follow(self, renderer: Any) -> None:
+    def follow(self, renderer: vtkRenderer) -> None:
         """Add a view that is drawn only where it has changed."""
         self._renderers.append(renderer)
         self.frames[renderer.GetAddressAsString("")] = 0
@@ -66,7 +71,7 @@ class KeptViews:
         """Draw all views in the next frame."""
         self._shown.clear()
 
-    def postpone(self, renderer: Any) -> None:
+    def postpone(self, renderer: vtkRenderer) -> None:
         """Keep a view's picture in the next frame, though it has changed."""
         self._postponed = renderer
 
@@ -115,12 +120,12 @@ class KeptViews:
         while self._left:
             self._left.pop().SetDraw(True)
 
-    def _comparable(self, window: Any) -> bool:
+    def _comparable(self, window: vtkRenderWindow) -> bool:
         """Return True for an ordinary frame of the window: no tile, no stereo, no selection."""
         whole = tuple(window.GetTileScale()) == (1, 1) and not window.GetStereoRender()
         return whole and all(one.GetSelector() is None for one in items_of(window.GetRenderers()))
 
-    def _state(self, renderer: Any) -> Hashable:
+    def _state(self, renderer: vtkRenderer) -> Hashable:
         """Return the state of a view with its overlays; None if it is unknown."""
         box = renderer.GetViewport()
         others = (one for one in items_of(self._window.Get().GetRenderers()) if one not in self._renderers)
@@ -144,7 +149,7 @@ def _overlap(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
     return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
-def _letters(renderer: Any) -> Hashable:
+def _letters(renderer: vtkRenderer) -> Hashable:
     """Return a renderer's overlays, texts and colour bars; None for charts, which count no changes."""
     found = []
     for prop in items_of(renderer.GetViewProps()):

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from weakref import WeakSet
 
 import numpy as np
 import numpy.typing as npt
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor, vtkAssembly, vtkProp, vtkPropAssembly, vtkRenderer
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkCamera, vtkRenderWindow
 
 Matrix = npt.NDArray[np.float64]
 
@@ -119,7 +122,12 @@ class Frame:
         return moved
 
 
-def frame_of(renderer: vtkRenderer, actor: Any, viewport: tuple[int, int, int, int], camera: Any = None) -> Frame:
+def frame_of(
+    renderer: vtkRenderer,
+    actor: vtkActor,
+    viewport: tuple[int, int, int, int],
+    camera: vtkCamera | None = None,
+) -> Frame:
     """Return viewport and matrices of an actor as a renderer draws it now, stereo eye included."""
     # Or as it would by another camera.
     camera = renderer.GetActiveCamera() if camera is None else camera
@@ -160,7 +168,7 @@ def samples_per_pixel(renderer: vtkRenderer, viewport: tuple[int, int, int, int]
 _reduced: dict[str, tuple[float, float]] = {}
 
 
-def reduce_detail(window: Any, pixels: float, share: float = 1.0) -> None:
+def reduce_detail(window: vtkRenderWindow, pixels: float, share: float = 1.0) -> None:
     """Draw a window with an error in pixels and a share of the streamlines, for speed; 0 and 1 end it."""
     address = window.GetAddressAsString("")
     _reduced.pop(address, None)
@@ -173,7 +181,7 @@ def slack(renderer: vtkRenderer) -> float:
     return _reduced.get(renderer.GetRenderWindow().GetAddressAsString(""), (0.0, 1.0))[0] if _reduced else 0.0
 
 
-def wanted_share(window: Any) -> float:
+def wanted_share(window: vtkRenderWindow) -> float:
     """Return the share of the streamlines that :func:`reduce_detail` requests in a window; 1 by default."""
     return _reduced.get(window.GetAddressAsString(""), (0.0, 1.0))[1] if _reduced else 1.0
 
@@ -217,9 +225,7 @@ def others_before(renderer: vtkRenderer, actor: vtkProp) -> bool:
     # False while VTK selects, which draws an invisible frame.
     if renderer.GetSelector() is not None:
         return False
-    props = renderer.GetViewProps()
-    for index in range(props.GetNumberOfItems()):
-        prop = props.GetItemAsObject(index)
+    for prop in items_of(renderer.GetViewProps()):
         if prop is actor:
             return False
         if prop.GetVisibility() and prop.HasOpaqueGeometry():
@@ -232,9 +238,7 @@ def others_opaque(renderer: vtkRenderer, actor: vtkProp) -> bool:
 
     Props in the plane of the screen and volumes of VTK leave no depth, though they call themselves opaque.
     """
-    props = renderer.GetViewProps()
-    for index in range(props.GetNumberOfItems()):
-        prop = props.GetItemAsObject(index)
+    for prop in items_of(renderer.GetViewProps()):
         flat = prop is actor or prop.IsA("vtkActor2D") or prop.IsA("vtkVolume")
         if not flat and prop.GetVisibility() and prop.HasOpaqueGeometry():
             return True

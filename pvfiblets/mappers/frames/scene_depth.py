@@ -44,7 +44,8 @@ class OutsideDepth:
     def copy_of_window(self, renderer: vtkRenderer, size: tuple[int, int]) -> moderngl.Texture | None:
         """Copy the depth of a renderer's part of its window's own framebuffer, whichever is bound."""
         # Depth peeling draws translucent actors into other framebuffers, when all opaque ones are in that one.
-        framebuffer = renderer.GetRenderWindow().GetRenderFramebuffer()
+        window: Any = renderer.GetRenderWindow()  # an OpenGL one
+        framebuffer = window.GetRenderFramebuffer()
         depth = None if framebuffer is None else framebuffer.GetDepthAttachmentAsTextureObject()
         if depth is None or renderer.GetPass() is not None or tuple(renderer.GetSize()) != tuple(size):
             return None

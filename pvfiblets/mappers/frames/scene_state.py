@@ -8,7 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer, vtkRenderWindow
 
 _multisamples: dict[str, int] = {}  # settings of windows that render a frame without multisampling, by address
 
@@ -23,7 +26,7 @@ _PARTS = ("GetBackgroundTexture", "GetEnvironmentTexture", "GetPass", "GetRightB
 _OVER = ("vtkActor2D", "vtkContextActor")  # classes of overlays
 
 
-def scene_state(renderer: Any) -> Hashable:
+def scene_state(renderer: vtkRenderer) -> Hashable:
     """Return what a renderer would draw now; equal values mean equal pictures."""
     window = renderer.GetRenderWindow()
     return (
@@ -38,7 +41,7 @@ def scene_state(renderer: Any) -> Hashable:
 
 
 @contextmanager
-def without_multisamples(window: Any) -> Iterator[None]:
+def without_multisamples(window: vtkRenderWindow) -> Iterator[None]:
     """Render without multisampling; states of pictures stay equal."""
     address, samples = window.GetAddressAsString(""), window.GetMultiSamples()
     _multisamples[address] = samples
@@ -50,7 +53,7 @@ def without_multisamples(window: Any) -> Iterator[None]:
         del _multisamples[address]
 
 
-def _camera_state(renderer: Any) -> Hashable:
+def _camera_state(renderer: vtkRenderer) -> Hashable:
     """Return matrices: a camera's own count goes up when it is shifted and put back."""
     camera = renderer.GetActiveCamera()
     view = camera.GetModelViewTransformMatrix()
@@ -58,7 +61,7 @@ def _camera_state(renderer: Any) -> Hashable:
     return tuple(matrix.GetElement(row, k) for matrix in (view, projection) for row in range(4) for k in range(4))
 
 
-def _prop_states(prop: Any) -> Iterator[Hashable]:
+def _prop_states(prop: vtkProp) -> Iterator[Hashable]:
     if any(prop.IsA(kind) for kind in _OVER):
         return
     yield prop.GetAddressAsString(""), prop.GetRedrawMTime()
@@ -67,7 +70,7 @@ def _prop_states(prop: Any) -> Iterator[Hashable]:
         yield from _prop_states(part)
 
 
-def _of(renderer: Any, name: str) -> Any:
+def _of(renderer: vtkRenderer, name: str) -> Any:
     """Return what a method says; None where this VTK has no such."""
     method = getattr(renderer, name, None)
     return None if method is None else method()

@@ -8,16 +8,19 @@ takes `PATIENCE` at most, and the next goes on; while the camera moves, nothing 
 from __future__ import annotations
 
 import weakref
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.mappers.frames.idle_windows import picture_of
 from pvfiblets.mappers.frames.scene import in_motion, streamed
 from pvfiblets.mappers.frames.shifted_cameras import draws_sample
 
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
 PATIENCE = 0.25  # seconds of a frame in which parts are fetched: events of mouse and keys are heard as often
 
 
-def pace(engine: Any, renderer: Any) -> None:
+def pace(engine: Any, renderer: vtkRenderer) -> None:
     """Set the time limit of an engine of parts before it draws."""
     picture = picture_of(renderer)
     engine.hurried = in_motion(renderer)

@@ -15,15 +15,18 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import moderngl
 from vtkmodules.util.vtkConstants import VTK_UNSIGNED_CHAR
-from vtkmodules.vtkCommonCore import vtkWeakReference
+from vtkmodules.vtkCommonCore import vtkCommand, vtkWeakReference
 from vtkmodules.vtkRenderingOpenGL2 import vtkTextureObject
 
 from pvfiblets.mappers.frames.scene import renderers_of
 from pvfiblets.mappers.frames.scene_depth import OutsideDepth
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 GL_VIEWPORT = 0x0BA2
 MAX_ROW = 4096  # greatest width of a texture that holds a list: below every driver's limit
@@ -46,7 +49,7 @@ def gl_viewport(window: Any) -> tuple[int, int, int, int]:
     return x, y, width, height
 
 
-def _attach() -> Any:
+def _attach() -> moderngl.Context:
     """Return a moderngl context of its own on the current GL context."""
     # `moderngl.create_context` may return one that was made for another window.
     moderngl.init_context()
@@ -146,7 +149,7 @@ class WindowContext:
         self._callbacks = (lambda *_: self._sweep(), lambda *_: self._unregister())
         self._observers = [
             window.AddObserver(event, callback)
-            for event, callback in zip(("EndEvent", "DeleteEvent"), self._callbacks, strict=True)
+            for event, callback in zip((vtkCommand.EndEvent, vtkCommand.DeleteEvent), self._callbacks, strict=True)
         ]
         self.address = window.GetAddressAsString("")
 
@@ -160,7 +163,7 @@ class WindowContext:
         """Whether the GL context that the objects were made in still exists."""
         return self.window is not None and self._witness.GetHandle() != 0
 
-    def tell_lost(self, renderer: Any) -> None:
+    def tell_lost(self, renderer: vtkRenderer) -> None:
         """Warn once that VTK shows nothing translucent: where its depth peeling failed, with an error left behind."""
         # Some drivers refuse the copy of a multi-sampled depth that peeling begins with; meshes vanish as well.
         if self._told_lost or not renderer.GetUseDepthPeeling() or self.window.GetMultiSamples() < 2:
@@ -286,7 +289,7 @@ def make_current_again(mapper: Any) -> None:
             window.MakeCurrent()
 
 
-def context_of(window: Any) -> WindowContext:
+def context_of(window: vtkRenderWindow) -> WindowContext:
     """Return the context of a window whose GL context is current, a new one after re-creation."""
     address = window.GetAddressAsString("")
     context = _contexts.get(address)
@@ -305,7 +308,7 @@ def contexts_with(mapper: Any) -> list[WindowContext]:
 
 
 @contextmanager
-def borrowed_context(window: Any) -> Iterator[Any]:
+def borrowed_context(window: vtkRenderWindow) -> Iterator[Any]:
     """Yield the moderngl context of a window that need not show any fiblets, current and free to be used."""
     window.Initialize()
     window.MakeCurrent()

@@ -7,13 +7,18 @@ when the picture is complete, it is smoothed.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from vtkmodules.vtkRenderingCore import vtkActor
 
 from pvfiblets.engine.effects.antialias_coverage import Coverage, SmoothedLines
 from pvfiblets.engine.effects.picture import Attachment
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.frames.scene import items_of, smoothers
 from pvfiblets.mappers.frames.windows import weak
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer
 
 __all__ = ["EdgeSmoothing"]
 
@@ -39,7 +44,7 @@ class EdgeSmoothing:
         Whether any is drawn otherwise in the picture of one sample: mappers say so.
     """
 
-    def __init__(self, renderer: Any) -> None:
+    def __init__(self, renderer: vtkRenderer) -> None:
         self._renderer = weak(renderer)
         self._address: str = renderer.GetAddressAsString("")
         self._noted: dict[str, SmoothedLines] = {}
@@ -100,8 +105,10 @@ class EdgeSmoothing:
             del smoothers[self._address]
 
 
-def _is_surface(prop: Any) -> bool:
-    mapper: Any = prop.GetMapper() if prop.IsA("vtkActor") else None
+def _is_surface(prop: vtkProp) -> bool:
+    if not isinstance(prop, vtkActor):
+        return False
+    mapper: Any = prop.GetMapper()
     data = mapper.GetInput() if hasattr(mapper, "GetInput") else None
     if data is None or not data.IsA("vtkPolyData") or data.GetNumberOfLines() or data.GetNumberOfVerts():
         return False
@@ -110,10 +117,10 @@ def _is_surface(prop: Any) -> bool:
     return whole and look.GetRepresentationAsString() == "Surface"
 
 
-def _hides_by_depth(prop: Any) -> bool:
+def _hides_by_depth(prop: vtkProp) -> bool:
     """Whether each sample of a prop is either opaque or not there, with single samples of a pixel."""
     return (_is_ours(prop) or _is_surface(prop)) and not prop.HasTranslucentPolygonalGeometry()
 
 
-def _is_ours(prop: Any) -> bool:
-    return prop.IsA("vtkActor") and isinstance(prop.GetMapper(), EngineMapper)
+def _is_ours(prop: vtkProp) -> bool:
+    return isinstance(prop, vtkActor) and isinstance(prop.GetMapper(), EngineMapper)

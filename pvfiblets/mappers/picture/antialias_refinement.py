@@ -25,13 +25,16 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator
 from enum import Enum, auto
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.engine.effects.antialias_accumulation import Accumulation
 from pvfiblets.engine.effects.picture_passes import Attachment
 from pvfiblets.engine.effects.sample_positions import sample_positions
 from pvfiblets.mappers.frames.shifted_cameras import exact_wanted, note_depths, note_sample, shift, shifted_copy
 from pvfiblets.mappers.frames.windows import Slot
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
 __all__ = ["SAMPLES", "SHOWN_FROM", "Refinement"]
 
@@ -124,7 +127,7 @@ class Refinement:
         """Begin anew with the next frame."""
         self.state = None
 
-    def sample_camera(self, renderer: Any) -> Any:
+    def sample_camera(self, renderer: vtkRenderer) -> Any:
         """Return a copy of a renderer's camera, shifted as for the next sample of an unfinished picture; None if none.
 
         Who draws with it beforehand says by `spend` how long that took.
@@ -144,7 +147,7 @@ class Refinement:
 
     # Steps of a frame
 
-    def start(self, renderer: Any, state: Hashable, *, layered: bool = False, held: bool = False) -> None:
+    def start(self, renderer: vtkRenderer, state: Hashable, *, layered: bool = False, held: bool = False) -> None:
         """Decide what the frame is that a renderer is about to draw, and shift its camera for a sample.
 
         `layered`, `held`: the next one is, if it is not plain.
@@ -186,7 +189,7 @@ class Refinement:
         """Whether samples of others are to be drawn within the frame."""
         return self._frame is _Frame.HELD
 
-    def other_frames(self, renderer: Any, positions: Iterable[tuple[float, float]]) -> Iterator[None]:
+    def other_frames(self, renderer: vtkRenderer, positions: Iterable[tuple[float, float]]) -> Iterator[None]:
         """Yield for each of some samples of others, with the camera shifted."""
         self._frame = _Frame.ADDED
         note_sample(renderer, begun=True)
@@ -218,7 +221,7 @@ class Refinement:
         """Begin anew, with one sample after the other."""
         self._left, self._taken = list(self.positions), 0
 
-    def other_tile_frames(self, renderer: Any) -> Iterator[None]:
+    def other_tile_frames(self, renderer: vtkRenderer) -> Iterator[None]:
         """Yield for each sample of a tile but that which the renderer is about to draw, with the camera shifted."""
         self._name, self._painted = _TILE, False
         if min(_tile(renderer)) < 1:  # the renderer has no part in this tile
@@ -234,7 +237,7 @@ class Refinement:
                 self.put_back()
         self._frame = _Frame.SAMPLE if last else _Frame.MEAN
 
-    def _shift(self, renderer: Any, position: tuple[float, float]) -> None:
+    def _shift(self, renderer: vtkRenderer, position: tuple[float, float]) -> None:
         self._back = shift(renderer.GetActiveCamera(), _tile(renderer), position)
 
     def put_back(self) -> None:
@@ -287,7 +290,7 @@ class Refinement:
             sums.show(colour, viewport)
             sums.forget_kept()
 
-    def end(self, renderer: Any, state: Hashable, *, widened: bool, complete: bool = False) -> None:
+    def end(self, renderer: vtkRenderer, state: Hashable, *, widened: bool, complete: bool = False) -> None:
         """Note what has been drawn; `complete`: a frame that had no state at its start may have one now."""
         self.put_back()
         note_sample(renderer, begun=False)
@@ -304,7 +307,7 @@ class Refinement:
         self.state = state
 
 
-def _tile(renderer: Any) -> tuple[int, int]:
+def _tile(renderer: vtkRenderer) -> tuple[int, int]:
     """Return width and height, in pixels, of what the window shows of a renderer."""
     width, height, x, y = [0], [0], [0], [0]
     renderer.GetTiledSizeAndOrigin(width, height, x, y)

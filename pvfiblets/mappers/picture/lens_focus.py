@@ -6,13 +6,16 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 from pvfiblets.engine.effects.depth_of_field import WIDEST, Focus, distance_of
 from pvfiblets.engine.effects.picture import PictureEffects
 from pvfiblets.engine.effects.projection import Projection
 from pvfiblets.engine.effects.tone import is_number
 from pvfiblets.mappers.frames.scene import in_motion, pixel_scale, samples_per_pixel, to_array
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
 FOLLOWED = ("cursor", "center")  # places in the picture whose depth may be the one in focus
 
@@ -76,7 +79,13 @@ class Focusing:
         return abs(self.distance - self._aim) <= SETTLED * self._aim
 
     def focus(
-        self, wanted: DepthOfField, renderer: Any, effects: PictureEffects, lens: Projection, *, held: bool = False
+        self,
+        wanted: DepthOfField,
+        renderer: vtkRenderer,
+        effects: PictureEffects,
+        lens: Projection,
+        *,
+        held: bool = False,
     ) -> Focus:
         """Return what the lens is set to for a picture that has just been copied."""
         viewport = (0, 0, *lens.size)
@@ -114,14 +123,14 @@ class Focusing:
             self.distance = self._aim
 
 
-def lens_of(renderer: Any, size: tuple[int, int]) -> Projection:
+def lens_of(renderer: vtkRenderer, size: tuple[int, int]) -> Projection:
     """Return the camera's lens for a picture of some pixels, stereo eye and tile included."""
     aspect = renderer.GetTiledAspectRatio()
     return Projection(size, to_array(renderer.GetActiveCamera().GetProjectionTransformMatrix(aspect, -1.0, 1.0)))
 
 
 def _seen_at(
-    place: str, renderer: Any, effects: PictureEffects, lens: Projection, samples: float, *, wait: bool
+    place: str, renderer: vtkRenderer, effects: PictureEffects, lens: Projection, samples: float, *, wait: bool
 ) -> float | None:
     """Return the distance (mm) of the nearest surface at a pixel; None over the background, and in tiles."""
     # Without waiting for the GPU, it is that of a picture before; None if nothing new is known of any.

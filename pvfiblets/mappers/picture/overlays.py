@@ -7,7 +7,12 @@ out of the passes, and drawn when the renderer is done.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from pvfiblets.mappers.frames.scene import items_of
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
 LAST = ("vtkSSAOPass", "vtkEDLShading")  # passes that leave the depth of their result in VTK's framebuffer
 
@@ -18,7 +23,7 @@ class Overlay:
     def __init__(self) -> None:
         self._held: tuple[Any, Any] | None = None
 
-    def hold(self, renderer: Any) -> None:
+    def hold(self, renderer: vtkRenderer) -> None:
         """Keep it out of this frame's passes, if one of them comes last that should come before the effects."""
         outermost = renderer.GetPass()
         if outermost is None or outermost.GetClassName() not in LAST:
@@ -28,7 +33,7 @@ class Overlay:
             self._held = steps, steps.GetOverlayPass()
             steps.SetOverlayPass(None)
 
-    def let_go(self, renderer: Any) -> None:
+    def let_go(self, renderer: vtkRenderer) -> None:
         """Draw it, if it has been kept out; the renderer is done."""
         held, self._held = self._held, None
         if held is None:
@@ -39,12 +44,11 @@ class Overlay:
             return
         width, height, x, y = [0], [0], [0], [0]
         renderer.GetTiledSizeAndOrigin(width, height, x, y)
-        state = renderer.GetRenderWindow().GetState()
+        window: Any = renderer.GetRenderWindow()  # an OpenGL one
+        state = window.GetState()
         state.vtkglViewport(x[0], y[0], width[0], height[0])
         state.vtkglScissor(x[0], y[0], width[0], height[0])
-        props = renderer.GetViewProps()
-        for index in range(props.GetNumberOfItems()):
-            prop = props.GetItemAsObject(index)
+        for prop in items_of(renderer.GetViewProps()):
             if prop.GetVisibility():
                 prop.RenderOverlay(renderer)
 

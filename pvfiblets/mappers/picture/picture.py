@@ -409,7 +409,7 @@ class Picture:
             sample = refinement is not None and refinement.is_sample
             self._smoothing.begin(sample=sample, smooths=refinement is None or refinement.plain)
 
-    def _lines_at_once(self, renderer: Any) -> tuple[list[Any], list[Any]]:
+    def _lines_at_once(self, renderer: vtkRenderer) -> tuple[list[Any], list[Any]]:
         """Return actors whose samples are drawn at once next, and all else that is shown.
 
         None where samples are drawn one after the other.
@@ -422,7 +422,7 @@ class Picture:
         found: tuple[list[Any], list[Any]] = self._smoothing.at_once()
         return found
 
-    def _draw_others(self, renderer: Any) -> None:
+    def _draw_others(self, renderer: vtkRenderer) -> None:
         """Draw samples of others, each in a frame within the next one."""
         refinement, job = self._refinement, self._job
         assert refinement is not None
@@ -458,14 +458,14 @@ class Picture:
         except EngineError:
             self._lacks_memory = True
 
-    def _other_samples(self, renderer: Any) -> OtherSamples:
+    def _other_samples(self, renderer: vtkRenderer) -> OtherSamples:
         """Return the samples of others."""
         from pvfiblets.engine.fiblets.sample_layers import OtherSamples
 
         kept = context_of(renderer.GetRenderWindow()).slot(self._prop).effects[_OTHERS][1]
         return OtherSamples(*kept.copied)
 
-    def _draw_layers(self, renderer: Any) -> None:
+    def _draw_layers(self, renderer: vtkRenderer) -> None:
         """Add up the layers of all samples, each in a frame inside of the one that the renderer is about to draw."""
         assert self._refinement is not None
         assert self._job is not None
@@ -489,7 +489,7 @@ class Picture:
             self._drop_job()
         self._overlay.hold(renderer)
 
-    def _draw_around(self, renderer: Any) -> None:
+    def _draw_around(self, renderer: vtkRenderer) -> None:
         """Copy the surroundings of a tile for effects that read them, before the tile is drawn."""
         self._margin = None
         if self._depth_of_field is None:
@@ -506,7 +506,7 @@ class Picture:
         finally:
             self._shift = 0, 0
 
-    def _draw_inside(self, renderer: Any) -> None:
+    def _draw_inside(self, renderer: vtkRenderer) -> None:
         """Draw another frame of the renderer inside of the one that it is about to draw."""
         self._inside = True
         try:
@@ -537,7 +537,7 @@ class Picture:
             if self.drawn is not None:
                 self.drawn()
 
-    def _state(self, renderer: Any) -> Hashable:
+    def _state(self, renderer: vtkRenderer) -> Hashable:
         """Return what the picture is made of; None while it changes from frame to frame, or cannot be refined."""
         if renderer.GetPass() is not None and renderer.GetPass() is self._untextured.Get():
             return None
@@ -635,7 +635,7 @@ class Picture:
         effects.draw(colour, viewport, tone=self._tone, focus=focus, lens=lens)
 
 
-def _refinable(renderer: Any) -> bool:
+def _refinable(renderer: vtkRenderer) -> bool:
     """Return whether a picture has a camera that can be shifted, and one of them."""
     camera = renderer.GetActiveCamera()
     fixed = camera.GetUseExplicitProjectionTransformMatrix() or camera.GetUseOffAxisProjection()
@@ -643,7 +643,7 @@ def _refinable(renderer: Any) -> bool:
 
 
 @contextmanager
-def _only(renderer: Any, props: list[Any]) -> Iterator[None]:
+def _only(renderer: vtkRenderer, props: list[Any]) -> Iterator[None]:
     """Show only some props of a renderer, without events and without a change of state."""
     shown, address = renderer.GetViewProps(), renderer.GetAddressAsString("")
     before = items_of(shown)
@@ -663,9 +663,9 @@ def _only(renderer: Any, props: list[Any]) -> Iterator[None]:
                 shown.AddItem(prop)
 
 
-def _starts_empty(renderer: Any) -> bool:
+def _starts_empty(renderer: vtkRenderer) -> bool:
     """Return whether a renderer that draws once more begins with its background."""
-    return renderer.GetLayer() == 0 and renderer.GetErase() and not renderer.GetPreserveColorBuffer()
+    return renderer.GetLayer() == 0 and bool(renderer.GetErase()) and not renderer.GetPreserveColorBuffer()
 
 
 def _smoother(context: WindowContext, slot: Slot) -> Any:

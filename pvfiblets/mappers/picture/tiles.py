@@ -8,7 +8,10 @@ renderer, with its camera's window shifted.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,7 @@ class Margin:
         return [(x, y) for x in across for y in up if (x, y) != (0, 0)]
 
 
-def margin_of(renderer: Any, reach: int) -> Margin | None:
+def margin_of(renderer: vtkRenderer, reach: int) -> Margin | None:
     """Return the surroundings of what a renderer is about to draw."""
     window = renderer.GetRenderWindow()
     if tuple(window.GetTileScale()) == (1, 1) or renderer.GetPass() is not None:

@@ -9,14 +9,18 @@ has the mapper, the property and the shader property.
 from __future__ import annotations
 
 import warnings
-from typing import Any, cast
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, cast
 
+from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
 from pvfiblets.mappers.effects import resolve
 from pvfiblets.mappers.frames.scene import actors_in, items_of
 from pvfiblets.mappers.frames.windows import weak
-from pvfiblets.mappers.vtk_pipeline.vtk_overrides import override
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
 VTK_SURFACE = 2
 
@@ -33,8 +37,9 @@ class ActorLink:
     found = False  # whether the actor was given the mapper by `SetMapper`, not by `attach`
     installed: tuple[resolve.Replacement, ...] = ()
 
-    def __init__(self, mapper: vtkMapper) -> None:
+    def __init__(self, mapper: vtkMapper, before_attach: Callable[[], None]) -> None:
         self._mapper = weak(mapper)
+        self._before_attach = before_attach
         self._features: frozenset[str] = frozenset()
         self._translucent = False
         self._forget()
@@ -58,10 +63,10 @@ class ActorLink:
     def attach(self, actor: vtkActor) -> None:
         """Make the mapper that of an actor, and add the shader pieces to it."""
         self.detach()
-        override()  # of modules of VTK's that have been loaded since
+        self._before_attach()
         self._actor = weak(actor)
         actor.SetMapper(cast("Any", self._mapper.Get()))
-        self._tags = actor.AddObserver("ModifiedEvent", self._actor_changed), 0
+        self._tags = actor.AddObserver(vtkCommand.ModifiedEvent, self._actor_changed), 0
         self._watch_property(actor)
         self.install()
 
@@ -107,7 +112,7 @@ class ActorLink:
         for name in sorted(new):
             warnings.warn(f"actor.{name} changes nothing here: {_UNUSED[name][1]}", UserWarning, stacklevel=2)
 
-    def check_alone(self, renderer: Any) -> None:
+    def check_alone(self, renderer: vtkRenderer) -> None:
         """Raise if actors share the mapper, as copies of an actor do: VTK does not say which one it draws."""
         props = renderer.GetViewProps()
         seen = renderer.GetAddressAsString(""), props.GetMTime()
@@ -148,7 +153,7 @@ class ActorLink:
             self._property.Get().RemoveObserver(self._tags[1])
         _keep_surface(actor.GetProperty(), "")
         self._property = weak(actor.GetProperty())
-        self._tags = self._tags[0], actor.GetProperty().AddObserver("ModifiedEvent", _keep_surface)
+        self._tags = self._tags[0], actor.GetProperty().AddObserver(vtkCommand.ModifiedEvent, _keep_surface)
 
     def modified(self) -> None:
         """Notify observers that render on demand; the mapper's own time would make VTK rebuild its shaders."""

@@ -85,8 +85,8 @@ class Connection:
         mapper._put(None)  # noqa: SLF001  its other half
         self.input.SetInputConnection(port)
         if port is not None:
-            self._port = self.input.GetOutputPort()
-            _BASE.SetInputConnection(mapper, self._port)
+            self._port = port = self.input.GetOutputPort()
+            _BASE.SetInputConnection(mapper, port)
 
     def begin_reading(self, data: vtkPolyData) -> None:
         """Connect real lines, with RGBA as active scalars or in the colour of the actor's property."""

@@ -14,13 +14,14 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any, cast
 
+from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from pvfiblets.mappers.frames.scene import actors_in, items_of, to_array, world_planes
 from pvfiblets.mappers.frames.windows import contexts_with, weak
 
 if TYPE_CHECKING:
-    from vtkmodules.vtkRenderingCore import vtkRenderer
+    from vtkmodules.vtkRenderingCore import vtkHardwareSelector, vtkRenderer, vtkRenderWindow
 
     from pvfiblets.mappers.engine_mapper import EngineMapper
     from pvfiblets.mappers.vtk_pipeline.actor_link import ActorLink
@@ -115,9 +116,9 @@ class LineReading:
                 if follow is not None:
                     follow(begun.GetSelector())
 
-            renderer.AddObserver("StartEvent", started)
+            renderer.AddObserver(vtkCommand.StartEvent, started)
 
-    def _follow_selection(self, selector: Any) -> None:
+    def _follow_selection(self, selector: vtkHardwareSelector) -> None:
         """Be real lines while VTK selects cells or points, and be drawn by the engine in every other picture."""
         mapper = self.mapper
         if self.purpose == "export":
@@ -147,7 +148,7 @@ def reading_of(mapper: Any) -> LineReading | None:
     return found if isinstance(found, LineReading) else None
 
 
-def _clear_errors(mapper: Any, selector: Any) -> None:
+def _clear_errors(mapper: Any, selector: vtkHardwareSelector) -> None:
     """Drop, after a selection, the error of OpenGL that VTK leaves when its data become lines after triangles."""
     # It binds a buffer that it has deleted (9.7, mappers of its own too); the next caller would see the error.
     follower = weak(mapper)
@@ -160,7 +161,7 @@ def _clear_errors(mapper: Any, selector: Any) -> None:
                 context.window.MakeCurrent()
                 context.ctx.clear_errors()
 
-    tag = selector.AddObserver("EndEvent", ended)
+    tag = selector.AddObserver(vtkCommand.EndEvent, ended)
 
 
 def _same(one: tuple[Any, ...], other: tuple[Any, ...]) -> bool:
@@ -176,7 +177,7 @@ def _same(one: tuple[Any, ...], other: tuple[Any, ...]) -> bool:
 
 
 @contextmanager
-def readable(window: Any, *, most: int = MOST_POINTS) -> Iterator[None]:
+def readable(window: vtkRenderWindow, *, most: int = MOST_POINTS) -> Iterator[None]:
     """Make a window's lines of this package readable for VTK's code, with the colours of the picture.
 
     Exporters of VTK (``vtkGLTFExporter`` and its like) and PyVista's ``export_*`` do so by themselves.
@@ -255,7 +256,7 @@ def _tell(readings: list[LineReading], counts: list[int | None], total: int, mos
         )
 
 
-def _actors_of(window: Any) -> list[Any]:
+def _actors_of(window: vtkRenderWindow) -> list[Any]:
     """Return the actors that a window shows, each once."""
     found: dict[str, Any] = {}
     for renderer in items_of(window.GetRenderers()):

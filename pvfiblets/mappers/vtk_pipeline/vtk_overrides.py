@@ -13,6 +13,7 @@ from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
+from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkRenderingCore import vtkActor, vtkCellPicker, vtkPicker, vtkPointPicker
 
 from pvfiblets.mappers.frames.scene import actors_in, items_of, to_array
@@ -26,7 +27,7 @@ EXPORTERS = {
 }  # fmt: skip
 
 
-def follow(picker: Any) -> Any:
+def follow(picker: vtkPicker) -> Any:
     """Make a picker find this package's actors: ``vtkPicker``, ``vtkPointPicker``, ``vtkCellPicker`` or their like.
 
     Those that are made after the first actor of this package do so by themselves.
@@ -45,12 +46,12 @@ def follow(picker: Any) -> Any:
     Its ``GetDataSet()`` is PolyData of the lines that are shown, whose cell data ``'streamline'`` says which streamline
     ``GetCellId()`` is.
     """
-    picker.AddObserver("StartPickEvent", _begin)
-    picker.AddObserver("EndPickEvent", _end)
+    picker.AddObserver(vtkCommand.StartPickEvent, _begin)
+    picker.AddObserver(vtkCommand.EndPickEvent, _end)
     return picker
 
 
-def _readings(picker: Any) -> list[LineReading]:
+def _readings(picker: vtkPicker) -> list[LineReading]:
     renderer = picker.GetRenderer()
     if renderer is None:
         return []
@@ -70,7 +71,7 @@ def _begin(picker: Any, _event: str) -> None:
     picker.looked_at = looked_at  # of what its GetDataSet() returns it keeps an address only
 
 
-def _ray(picker: Any, actor: vtkActor | None) -> tuple[Any, float]:
+def _ray(picker: vtkPicker, actor: vtkActor | None) -> tuple[Any, float]:
     """Return the ends of a pick's ray and its tolerance at the far one, mm of an actor's data."""
     renderer, (x, y, _) = picker.GetRenderer(), picker.GetSelectionPoint()
     width, height = renderer.GetRenderWindow().GetSize()
@@ -86,7 +87,7 @@ def _ray(picker: Any, actor: vtkActor | None) -> tuple[Any, float]:
     return np.array([start, stop]), float(np.linalg.norm(beside - stop))
 
 
-def _end(picker: Any, _event: str) -> None:
+def _end(picker: vtkPicker, _event: str) -> None:
     for reading in _readings(picker):
         reading.end()
 
@@ -123,9 +124,9 @@ _done: set[str] = set()
 def override() -> None:
     """Register this package with the loaded VTK pickers and exporters; a second call has no effect."""
     if not _done:
-        vtkPicker.override(_Picker)
-        vtkPointPicker.override(_PointPicker)
-        vtkCellPicker.override(_CellPicker)
+        pickers: dict[Any, type] = {vtkPicker: _Picker, vtkPointPicker: _PointPicker, vtkCellPicker: _CellPicker}
+        for base, ours in pickers.items():
+            base.override(ours)
         _done.add("pickers")
     for module, names in EXPORTERS.items():
         if module in sys.modules and module not in _done:

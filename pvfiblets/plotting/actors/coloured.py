@@ -19,6 +19,8 @@ from pvfiblets.plotting.settings.settings import Given, Setting, Settings
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+
     from pvfiblets.mappers.colouring import Colouring
     from pvfiblets.mappers.engine_mapper import EngineMapper
     from pvfiblets.plotting.colours.scalars import Scalars
@@ -131,14 +133,14 @@ class ColouredActor(Settings, pv.Actor):
 
     # What a component asks ----------------------------------------------------------------------
 
-    def entered(self, renderer: Any) -> None:
+    def entered(self, renderer: vtkRenderer) -> None:
         """Handle that a renderer draws the actor from now on."""
 
     def raise_pending(self) -> None:
         """Raise what drawing stored, once."""
         self._mapper.raise_pending()
 
-    def release(self, window: Any = None) -> None:
+    def release(self, window: vtkRenderWindow | None = None) -> None:
         """Release the actor's GPU memory in a window, or in all windows."""
         self._mapper.release(window)
 

@@ -13,9 +13,10 @@ import weakref
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any, ClassVar, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar
 
 import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import vtkPicker
 
@@ -28,6 +29,9 @@ from pvfiblets.plotting.settings.call_signature import document, refuse_unknown,
 from pvfiblets.plotting.settings.mesh_arguments import apply, translate
 from pvfiblets.plotting.settings.settings import Settings
 from pvfiblets.plotting.settings.shared import Common
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 
 class Registered(Protocol):
@@ -62,11 +66,11 @@ class Registered(Protocol):
         """Call that whenever another scalar bar is needed."""
         ...
 
-    def entered(self, renderer: Any) -> None:
+    def entered(self, renderer: pv.Renderer) -> None:
         """Handle that a renderer draws it from now on."""
         ...
 
-    def release(self, window: Any = None) -> None:
+    def release(self, window: vtkRenderWindow | None = None) -> None:
         """Give back the GPU memory that it has in a window, or in all."""
         ...
 
@@ -238,7 +242,7 @@ class ActorRegistry(Generic[A]):
 
     # Life cycle ---------------------------------------------------------------------------------
 
-    def show_in(self, actor: A, renderer: Any) -> None:
+    def show_in(self, actor: A, renderer: pv.Renderer) -> None:
         """Show an actor in another renderer of the plotter, too; both share GPU memory.
 
         Parameters
@@ -254,7 +258,7 @@ class ActorRegistry(Generic[A]):
         )
         self._follow(actor, renderer)
 
-    def _track(self, actor: A, renderer: Any) -> None:
+    def _track(self, actor: A, renderer: pv.Renderer) -> None:
         self._actors.append(actor)
         for other in self._plotter.renderers:
             self._observe(other)
@@ -262,16 +266,16 @@ class ActorRegistry(Generic[A]):
         # Registered current here, since `clear_on_render_callbacks` drops what others registered.
         self._plotter.add_on_render_callback(self._raise_pending)
 
-    def _observe(self, renderer: Any) -> set[str]:
+    def _observe(self, renderer: pv.Renderer) -> set[str]:
         """Observe a renderer's actors; return the addresses of this package's actors in it."""
         address = renderer.GetAddressAsString("")
         if address not in self._renderers:
             # `Renderer.add_actor`, `remove_actor` and their kin end in Modified(): no other sign is given.
-            tag = renderer.AddObserver("ModifiedEvent", self._actors_changed)
+            tag = renderer.AddObserver(vtkCommand.ModifiedEvent, self._actors_changed)
             self._renderers[address] = (renderer, tag, set())
         return self._renderers[address][2]
 
-    def _follow(self, actor: A, renderer: Any) -> None:
+    def _follow(self, actor: A, renderer: pv.Renderer) -> None:
         self._observe(renderer).add(actor.memory_address)
         actor.entered(renderer)
         self._smooth(renderer)
@@ -299,7 +303,7 @@ class ActorRegistry(Generic[A]):
                 for renderer, _, _ in self._renderers.values():
                     self._smooth(renderer)
 
-    def _smooth(self, renderer: Any) -> None:
+    def _smooth(self, renderer: pv.Renderer) -> None:
         """Smooth edges by default where an actor of this package is shown; load nothing elsewhere."""
         if default_antialias() != "off":
             import_module("pvfiblets.plotting.picture_component")  # Qt's plotters have only imported components
@@ -398,7 +402,7 @@ class ActorRegistry(Generic[A]):
         shown = self._plotter.scalar_bars._scalar_bar_mappers  # noqa: SLF001
         return any(actor.mapper in mappers for mappers in shown.values())
 
-    def _set_label(self, actor: A, label: str, renderer: Any) -> None:
+    def _set_label(self, actor: A, label: str, renderer: pv.Renderer) -> None:
         face = pv.Rectangle() if actor.scalars_title else pv.Triangle()
         entry = (face, label, actor.legend_color)
         renderer._labels[actor.memory_address] = entry  # noqa: SLF001 - as add_mesh does

@@ -207,7 +207,7 @@ class ConnectomeGraph:
 
     # Life cycle ---------------------------------------------------------------------------------
 
-    def enter(self, plotter: Any, name: str, common: Mapping[str, Any]) -> None:
+    def enter(self, plotter: pv.BasePlotter, name: str, common: Mapping[str, Any]) -> None:
         """Add the actors to a plotter's active renderer; a component calls it once."""
         self._plotter, self._renderer, self.name = plotter, plotter.renderer, name
         self._common = dict(common)

@@ -37,6 +37,8 @@ from pvfiblets.plotting.settings.settings import Given
 from pvfiblets.query.measures.even_sample import mean_direction
 
 if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 
@@ -197,7 +199,7 @@ class FibletActor(FibletSettings, SelectableActor):
         """
         return self._mapper.pick_at(x, y)
 
-    def pick_box(self, box: Any, *, through: bool = False, renderer: Any = None) -> Picked | None:
+    def pick_box(self, box: Any, *, through: bool = False, renderer: vtkRenderer | None = None) -> Picked | None:
         """Return the streamlines in a rectangle of the window.
 
         Parameters
@@ -223,7 +225,7 @@ class FibletActor(FibletSettings, SelectableActor):
         return self._pick(checked_box(box), through, 0.0, renderer)
 
     def pick_polygon(
-        self, points: Any, *, through: bool = False, tolerance: float = 0.0, renderer: Any = None
+        self, points: Any, *, through: bool = False, tolerance: float = 0.0, renderer: vtkRenderer | None = None
     ) -> Picked | None:
         """Return the streamlines in a polygon in the window.
 
@@ -251,7 +253,7 @@ class FibletActor(FibletSettings, SelectableActor):
         """
         return self._pick(points, through, tolerance, renderer)
 
-    def _pick(self, points: Any, through: bool, tolerance: float, renderer: Any) -> Picked | None:
+    def _pick(self, points: Any, through: bool, tolerance: float, renderer: vtkRenderer | None) -> Picked | None:
         from pvfiblets.query.selection.screen import checked_polygon
 
         find = everything if through else visible

@@ -11,12 +11,15 @@ from __future__ import annotations
 import math
 import weakref
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 
 from pvfiblets.plotting.fiblets.pick_overlay import Outline
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderWindowInteractor
 
 PRIORITY = 0.25  # widgets have 0.5, styles 0
 STILL = 3.0  # pixels: a mouse that moved less between press and release has clicked
@@ -31,7 +34,7 @@ class Pointing:
 
     def __init__(
         self,
-        plotter: Any,  # whose events
+        plotter: pv.BasePlotter,  # whose events
         *,
         mode: str,  # what the user draws
         button: str,  # that clicks; areas are drawn with the left one
@@ -54,7 +57,6 @@ class Pointing:
         self._pressed: tuple[int, int] | None = None
         self._corners: list[tuple[int, int]] = []
         self._outline: Outline | None = None
-        self._buttons = 0
         self.drawing = bool(start) and mode != "click"
         name = button.capitalize()
         if mode == "click":
@@ -72,7 +74,7 @@ class Pointing:
         """Call a handler; if it returns True, the event goes no further."""
         reference = weakref.WeakMethod(handler)
 
-        def call(interactor: Any, name: str) -> None:
+        def call(interactor: vtkRenderWindowInteractor, name: str) -> None:
             alive = reference()
             if alive is not None and alive():
                 interactor.GetCommand(self_tags[name]).SetAbortFlag(1)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor2D, vtkPolyDataMapper2D, vtkTextActor
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
 _BESIDE = (14, 10)  # pixels from the mouse to its text
 
@@ -20,7 +23,7 @@ def standing_out(background: Any) -> str:
 class Outline:
     """A closed line over one renderer."""
 
-    def __init__(self, renderer: Any, color: Any) -> None:
+    def __init__(self, renderer: vtkRenderer, color: Any) -> None:
         self._renderer = renderer  # drawn over
         self._mapper = vtkPolyDataMapper2D()
         self._actor = vtkActor2D()
@@ -60,7 +63,7 @@ class Tooltip:
         """The text; empty while there is none."""
         return str(self._text.GetInput()) if self._renderer is not None else ""
 
-    def show(self, renderer: Any, text: str, pixel: tuple[int, int]) -> bool:
+    def show(self, renderer: vtkRenderer, text: str, pixel: tuple[int, int]) -> bool:
         """Show a text, or none if it is empty; returns whether the picture has changed."""
         if not text:
             return self.remove()

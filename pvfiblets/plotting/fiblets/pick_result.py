@@ -13,6 +13,8 @@ from pvfiblets.mappers.frames.scene import to_array
 from pvfiblets.mappers.picking import Layer, pick_area, shown_by
 
 if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.fiblets.actor import FibletActor
 
@@ -131,7 +133,12 @@ def point_values(fiblets: FibletSet, ids: np.ndarray, name: str) -> tuple[np.nda
 
 
 def visible(
-    actor: FibletActor, polygon: Any, *, tolerance: float = 0.0, nearest: bool = False, renderer: Any = None
+    actor: FibletActor,
+    polygon: Any,
+    *,
+    tolerance: float = 0.0,
+    nearest: bool = False,
+    renderer: vtkRenderer | None = None,
 ) -> Picked | None:
     """Return the visible part of an actor in an area of the window; ``None`` if it is empty."""
     hits = pick_area(actor.picking_layers, polygon, renderer=renderer, tolerance=tolerance)
@@ -150,7 +157,7 @@ def visible(
 
 
 def everything(
-    actor: FibletActor, polygon: Any, *, tolerance: float = 0.0, renderer: Any = None
+    actor: FibletActor, polygon: Any, *, tolerance: float = 0.0, renderer: vtkRenderer | None = None
 ) -> Picked | None:
     """Return all of an actor under an area of the window, hidden or not; ``None`` if it is empty."""
     # Arguments are as for `visible`. Lines left out by the actor's filters and cuts are not included. Visible lines of

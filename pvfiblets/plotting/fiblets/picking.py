@@ -14,6 +14,8 @@ from pvfiblets.plotting.fiblets.pick_overlay import Tooltip, standing_out
 from pvfiblets.plotting.fiblets.pick_result import Picked, everything, visible
 
 if TYPE_CHECKING:
+    import pyvista as pv
+
     from pvfiblets.plotting.fiblets.actor import FibletActor
 
 MODES = ("click", "box", "lasso")
@@ -32,7 +34,7 @@ class MousePicking:
 
     def __init__(
         self,
-        plotter: Any,
+        plotter: pv.BasePlotter,
         actors: Iterable[FibletActor],
         callback: Callable[[Picked], Any] | None,
         *,

@@ -15,6 +15,8 @@ from pvfiblets.plotting.filtering.selection import AS_BEFORE, SelectionStyle
 if TYPE_CHECKING:
     from os import PathLike
 
+    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+
     from pvfiblets.mappers.fiblets import FibletMapper
     from pvfiblets.plotting.colours.scalars import Scalars
     from pvfiblets.plotting.fiblets.profiles import Profile
@@ -278,7 +280,7 @@ class SelectableActor(BundledActor):
 
     # Life ---------------------------------------------------------------------------------------
 
-    def entered(self, renderer: Any) -> None:
+    def entered(self, renderer: vtkRenderer) -> None:
         """Be told that a renderer draws the actor from now on."""
         if self._standout is not None:
             self._standout.enter(renderer)
@@ -289,7 +291,7 @@ class SelectableActor(BundledActor):
         if self._standout is not None:
             self._standout.mapper.raise_pending()
 
-    def release(self, window: Any = None) -> None:
+    def release(self, window: vtkRenderWindow | None = None) -> None:
         """Release the actor's GPU memory in a window, or in all windows."""
         super().release(window)
         if self._standout is not None:

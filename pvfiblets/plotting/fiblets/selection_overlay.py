@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor
 
@@ -26,6 +27,8 @@ from pvfiblets.mappers.picking import Layer
 from pvfiblets.streamlines import Streamlines
 
 if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.mappers.effects.shader_effects import Draw
     from pvfiblets.plotting.fiblets.selection import SelectableActor
@@ -100,14 +103,14 @@ class SelectionOverlay:
             return Layer(self.mapper, self.ids)
         return Layer(self.mapper, self.ids, self._starts)
 
-    def enter(self, renderer: Any) -> None:
+    def enter(self, renderer: vtkRenderer) -> None:
         """Be drawn by a renderer that draws the owner."""
         address = renderer.GetAddressAsString("")
         if address in self._renderers:
             return
         renderer.AddActor(self.actor)
         this = weak_method(self)
-        tag = renderer.AddObserver("StartEvent", lambda caller, _event: this(caller))
+        tag = renderer.AddObserver(vtkCommand.StartEvent, lambda caller, _event: this(caller))
         self._renderers[address] = (weak(renderer), tag)
 
     def leave(self) -> None:
@@ -132,7 +135,7 @@ class SelectionOverlay:
             if renderer is None or owner is None or not renderer.HasViewProp(owner):
                 self._leave(address)
 
-    def before_picture(self, renderer: Any) -> None:
+    def before_picture(self, renderer: vtkRenderer) -> None:
         """Remove itself if the owner is gone, otherwise copy its state, before VTK lists its actors."""
         if partly_shown:
             return
@@ -248,7 +251,7 @@ def weak_method(standout: SelectionOverlay) -> Any:
 
     reference = weakref.ref(standout)
 
-    def call(renderer: Any) -> None:
+    def call(renderer: vtkRenderer) -> None:
         alive = reference()
         if alive is not None:
             alive.before_picture(renderer)

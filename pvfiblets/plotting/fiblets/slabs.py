@@ -22,7 +22,7 @@ class FibletSlab:
 
     def __init__(
         self,
-        plotter: Any,  # where the slice is drawn
+        plotter: pv.BasePlotter,  # where the slice is drawn
         actors: Sequence[FibletActor],  # the fiblets to cut
         name: str,  # of the cut in each actor
         *,

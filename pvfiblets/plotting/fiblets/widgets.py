@@ -22,7 +22,7 @@ Widget = tuple[Any, Callable[[], None]]
 
 
 def plane(
-    plotter: Any,
+    plotter: pv.BasePlotter,
     actors: Sequence[FibletActor],
     name: str,
     cut: Callable[[Any, Any], None],
@@ -50,7 +50,14 @@ def plane(
 
 
 def box(
-    plotter: Any, actors: Sequence[FibletActor], name: str, *, bounds: Any, inside: bool, event: Any, **options: Any
+    plotter: pv.BasePlotter,
+    actors: Sequence[FibletActor],
+    name: str,
+    *,
+    bounds: Any,
+    inside: bool,
+    event: Any,
+    **options: Any,
 ) -> Widget:
     """Add a box that cuts where it is dragged, turned or not."""
 
@@ -70,7 +77,7 @@ def box(
 
 
 def surface(
-    plotter: Any,
+    plotter: pv.BasePlotter,
     actors: Sequence[FibletActor],
     name: str,
     mesh: pv.PolyData,
@@ -99,7 +106,7 @@ def surface(
     return widget, shown, remove
 
 
-def _end_widget(plotter: Any, kind: str, widget: Any) -> None:
+def _end_widget(plotter: pv.BasePlotter, kind: str, widget: Any) -> None:
     """Switch one of VTK's widgets off and have the plotter forget it."""
     widget.Off()
     held = getattr(getattr(plotter, "widgets", plotter), kind)  # of PyVista 0.49, and of those before
@@ -126,7 +133,7 @@ def _uncut(actors: Sequence[FibletActor], name: str) -> None:
             actor.unclip(name)
 
 
-def _box_region(box: pv.PolyData) -> Any:
+def _box_region(box: pv.PolyData) -> Region:
     """Return the region of VTK's box: its first eight points are the corners, turned or not."""
     from pvfiblets import regions
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from pvfiblets.plotting.settings import shared
-from pvfiblets.plotting.settings.places import OPTIONS, OWN, Place
-from pvfiblets.plotting.settings.settings import Argument, Setting, Settings, truth
+from pvfiblets.plotting.settings.places import OPTIONS, OWN, Place, Stored
+from pvfiblets.plotting.settings.settings import Setting, Settings, truth
 
 if TYPE_CHECKING:
-    from pvfiblets.plotting.halos.style import Threshold
+    from collections.abc import Sequence
+
+    Threshold: TypeAlias = float | Sequence[float | None] | None
 
 WIDTH_CUE = 0.5  # default reduction of the width of the farthest lines
 
@@ -17,13 +19,13 @@ WIDTH_CUE = 0.5  # default reduction of the width of the farthest lines
 class _Looks(Place):
     """A field of the actor's `LookSettings`, which check it; reading returns the value in use."""
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         return getattr(actor.look, setting.field)
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         actor._change(**{setting.field: value})  # noqa: SLF001 - of the class that it is part of
 
-    def value_for_copy(self, actor: Any, one: Argument) -> Any:
+    def value_for_copy(self, actor: Any, one: Stored) -> Any:
         return getattr(actor._looks, one.field)  # noqa: SLF001
 
 
@@ -33,10 +35,10 @@ class _Tapering(Place):
     def __init__(self, index: int) -> None:
         self._index = index
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:  # noqa: ARG002 - as of all places
+    def read(self, actor: Any, setting: Stored) -> Any:  # noqa: ARG002 - as of all places
         return actor.tapering[self._index]
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:  # noqa: ARG002 - as of all places
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:  # noqa: ARG002 - as of all places
         both = list(actor.tapering)
         both[self._index] = value
         actor.tapering = tuple(both)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,9 +14,7 @@ from pvfiblets.halos.spacing import default_widths
 from pvfiblets.plotting.halos.settings import WIDTH_CUE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    Threshold: TypeAlias = float | Sequence[float | None] | None
+    from pvfiblets.plotting.halos.settings import Threshold
 
 TAPERED = (2, 0.2)  # vertices over which ends narrow, and where along the mask those end: the paper's (section 3.4)
 

@@ -20,7 +20,7 @@ from pvfiblets.mappers.effects.highlight import Highlight
 from pvfiblets.mappers.effects.line_light import LineLight
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.fiblets import FibletMapper
-from pvfiblets.mappers.frames.scene import to_array, world_planes
+from pvfiblets.mappers.frames.scene import items_of, to_array, world_planes
 from pvfiblets.page.scene import CameraPlace, Light, PageScene, encoded, fiblet_layer
 from pvfiblets.plotting.page.cuts import cuts_of
 from pvfiblets.plotting.page.surfaces import add_image, add_surface, reflects_of
@@ -28,6 +28,8 @@ from pvfiblets.plotting.slices.plane import prepare
 
 if TYPE_CHECKING:
     from os import PathLike
+
+    from vtkmodules.vtkRenderingCore import vtkCamera, vtkRenderer
 
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.mappers.colouring import Colouring
@@ -39,7 +41,7 @@ MOST_FIBLET_LAYERS = 15
 
 
 def export_page(
-    plotter: Any, path: str | PathLike[str], *, title: str | None = None, largest_file: int | None = None
+    plotter: pv.BasePlotter, path: str | PathLike[str], *, title: str | None = None, largest_file: int | None = None
 ) -> list[Path]:
     """Write what a plotter's active renderer shows as a page; see `FibletsComponent.export_page`."""
     from pvfiblets.page.writing import LARGEST_FILE, write_page
@@ -48,12 +50,12 @@ def export_page(
     return write_page(scene, path, largest_file=LARGEST_FILE if largest_file is None else largest_file)
 
 
-def page_of(plotter: Any, *, title: str | None = None) -> PageScene:
+def page_of(plotter: pv.BasePlotter, *, title: str | None = None) -> PageScene:
     """Return what a plotter's active renderer shows."""
     return page_and_actors(plotter, title=title)[0]
 
 
-def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScene, list[str]]:
+def page_and_actors(plotter: pv.BasePlotter, *, title: str | None = None) -> tuple[PageScene, list[str]]:
     """Return what `page_of` does, and the names of the actors that the layers are."""
     renderer = plotter.renderer
     said = title or getattr(plotter, "title", None) or "Streamlines"
@@ -68,7 +70,7 @@ def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScen
 
 
 def add_all(
-    scene: PageScene, plotter: Any, *, controls: bool = True, besides: Collection[str] = ()
+    scene: PageScene, plotter: pv.BasePlotter, *, controls: bool = True, besides: Collection[str] = ()
 ) -> tuple[list[str], list[str]]:
     """Fill a page from a plotter's active renderer, without its camera."""
     renderer = plotter.renderer
@@ -90,13 +92,13 @@ def add_all(
     return list(dict.fromkeys(unable)), names
 
 
-def _actors(renderer: Any) -> Iterator[tuple[str, Any]]:
+def _actors(renderer: vtkRenderer) -> Iterator[tuple[str, Any]]:
     for name, actor in renderer.actors.items():
         if actor.GetVisibility():
             yield name, actor
 
 
-def _as_shown(plotter: Any, actor: Any, bars: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def _as_shown(plotter: pv.BasePlotter, actor: Any, bars: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return an actor's colour bars with the title that the plotter's has, and none if that shows none."""
     shown = plotter.scalar_bars
     titles = [title for title, mappers in shown._scalar_bar_mappers.items()  # noqa: SLF001 - it has no other list
@@ -285,24 +287,23 @@ def _values(
     return bare, said, ()
 
 
-def _background(renderer: Any) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    bottom = tuple(renderer.GetBackground())
-    top = tuple(renderer.GetBackground2()) if renderer.GetGradientBackground() else bottom
+def _background(renderer: vtkRenderer) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    bottom = renderer.GetBackground()
+    top = renderer.GetBackground2() if renderer.GetGradientBackground() else bottom
     return bottom, top
 
 
-def camera_place(camera: Any) -> CameraPlace:
+def camera_place(camera: vtkCamera) -> CameraPlace:
     """Return where a vtkCamera stands."""
     return CameraPlace(
-        tuple(camera.GetPosition()), tuple(camera.GetFocalPoint()), tuple(camera.GetViewUp()), camera.GetViewAngle(),
+        camera.GetPosition(), camera.GetFocalPoint(), camera.GetViewUp(), camera.GetViewAngle(),
         bool(camera.GetParallelProjection()), camera.GetParallelScale(),
     )  # fmt: skip
 
 
-def _lights(renderer: Any) -> Iterator[Light]:
+def _lights(renderer: vtkRenderer) -> Iterator[Light]:
     """Yield the lights that are on; camera lights in camera coordinates."""
-    lights = renderer.GetLights()
-    for light in (lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems())):
+    for light in items_of(renderer.GetLights()):
         intensity = light.GetIntensity()
         if not light.GetSwitch() or intensity <= 0.0:
             continue

@@ -8,9 +8,12 @@ with the colours of the picture as their data (`pvfiblets.mappers.vtk_pipeline.r
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.settings.call_signature import replace_method
+
+if TYPE_CHECKING:
+    import pyvista as pv
 
 METHODS = ("export_gltf", "export_obj", "export_vrml")
 
@@ -20,7 +23,7 @@ _MORE = (
 )
 
 
-def _export(plotter: Any, original: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
+def _export(plotter: pv.BasePlotter, original: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
     window = getattr(plotter, "render_window", None)
     if window is None:
         return original(plotter, *arguments, **named)

@@ -101,7 +101,7 @@ class PrintableComponent(ActorRegistry[A]):
         return image if return_img else None
 
 
-def _sampled_once(plotter: Any) -> AbstractContextManager[None]:
+def _sampled_once(plotter: pv.BasePlotter) -> AbstractContextManager[None]:
     """Return what keeps a plotter's pictures from being refined meanwhile."""
     if "pvfiblets.plotting.picture_component" not in sys.modules:
         return nullcontext()
@@ -109,7 +109,7 @@ def _sampled_once(plotter: Any) -> AbstractContextManager[None]:
     return kept
 
 
-def _taken(plotter: Any, scale: int, window_size: tuple[int, int] | None) -> npt.NDArray[np.uint8]:
+def _taken(plotter: pv.BasePlotter, scale: int, window_size: tuple[int, int] | None) -> npt.NDArray[np.uint8]:
     """Return ``(height, width, 3)`` of a plotter as it is now."""
     # Tiles of an enlarged picture are drawn past the plotter's callbacks: errors in them are raised here.
     errors: list[Exception] = []

@@ -25,7 +25,7 @@ _LIGHT = (1.0, 1.0, 1.0), (0.0, 1.0, 0.0)
 _METHOD: Any = next(vars(kind)["screenshot"] for kind in pv.Plotter.__mro__ if "screenshot" in vars(kind))
 
 
-def screenshot(plotter: Any, filename: Any = None, *, return_img: bool = True, **options: Any) -> Any:
+def screenshot(plotter: pv.BasePlotter, filename: Any = None, *, return_img: bool = True, **options: Any) -> Any:
     """Take a picture without the background, as PNG has it: colours are not multiplied by the opacity."""
     pictures = []
     for ground in range(2):
@@ -51,7 +51,7 @@ def _unmixed(on_first: npt.NDArray[np.float64], on_second: npt.NDArray[np.float6
 
 
 @contextmanager
-def _on_ground(plotter: Any, number: int) -> Iterator[None]:
+def _on_ground(plotter: pv.BasePlotter, number: int) -> Iterator[None]:
     """Draw all renderers of a plotter on the first or the second background in this scope."""
     from pvfiblets.mappers.effects.shading import is_light
 
@@ -70,7 +70,7 @@ def _on_ground(plotter: Any, number: int) -> Iterator[None]:
             renderer.SetTexturedBackground(textured)
 
 
-def _screenshot(plotter: Any, original: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
+def _screenshot(plotter: pv.BasePlotter, original: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
     from pvfiblets.mappers.engine_mapper import shows_engine
 
     given = inspect.signature(original).bind(plotter, *arguments, **named).arguments

@@ -7,14 +7,17 @@ pickers find this package's lines (`pvfiblets.mappers.vtk_pipeline.vtk_overrides
 from __future__ import annotations
 
 import warnings
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.settings.call_signature import replace_method
+
+if TYPE_CHECKING:
+    import pyvista as pv
 
 METHODS = ("enable_rectangle_visible_picking", "enable_cell_picking")
 
 
-def _enable(plotter: Any, original: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
+def _enable(plotter: pv.BasePlotter, original: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
     through = False
     if original.__name__ == "enable_cell_picking":
         through = named.get("through", arguments[1] if len(arguments) > 1 else True)

@@ -76,7 +76,7 @@ def plotter_method(component: Any) -> Any:
     """Register a component's ``add`` as a method of plotters, and return the class that makes it callable."""
     target = component.add
 
-    def add(plotter: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
+    def add(plotter: pv.BasePlotter, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
         return getattr(plotter, component.NAME).add(*arguments, **named)
 
     adder = _method_of_plotters(component.ADD, add, target.__doc__ or "", inspect.signature(target))
@@ -95,7 +95,7 @@ def replace_method(
     owner = next(kind for kind in pv.Plotter.__mro__ if name in vars(kind))
     original = vars(owner)[name]
 
-    def replaced(plotter: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
+    def replaced(plotter: pv.BasePlotter, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
         return call(plotter, original, arguments, named)
 
     doc = inspect.cleandoc(original.__doc__ or "") + more

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
-if TYPE_CHECKING:
-    from pvfiblets.plotting.settings.settings import Argument, Setting
+
+class Stored(Protocol):
+    """What a place reads of a setting or an argument."""
+
+    name: str
+    field: str  # its name in the place
+    default: Any
 
 
 class Place:
@@ -15,15 +20,15 @@ class Place:
 
     checks: ClassVar[bool] = False  # whether choices are looked at there, not before
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         """Return the present value."""
         raise NotImplementedError
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         """Change it; a refused value leaves all as it was."""
         raise NotImplementedError
 
-    def value_for_copy(self, actor: Any, one: Argument) -> Any:
+    def value_for_copy(self, actor: Any, one: Stored) -> Any:
         """Return the value to pass to a copy."""
         return getattr(actor, one.name)
 
@@ -36,33 +41,33 @@ class _Options(Place):
 
     checks = True
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         return getattr(actor.mapper.options, setting.field)
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         actor.mapper.options = replace(actor.mapper.options, **{setting.field: value})
 
 
 class _Colours(Place):
     """A field of the actor's ``ColourSettings``, which the look-up table is made from and checked by."""
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         return getattr(actor._settings, setting.field)  # noqa: SLF001 - of the class that it is part of
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         actor._set(setting.field, value)  # noqa: SLF001
 
-    def value_for_copy(self, actor: Any, one: Argument) -> Any:
+    def value_for_copy(self, actor: Any, one: Stored) -> Any:
         return getattr(actor._settings, one.field)  # noqa: SLF001
 
 
 class _Property(Place):
     """A field of the actor's ``prop``."""
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         return getattr(actor.prop, setting.field)
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         setattr(actor.prop, setting.field, value)
 
 
@@ -71,25 +76,25 @@ class _Mapper(Place):
 
     made_with = False
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         return getattr(actor._mapper, setting.field)  # noqa: SLF001 - of the class that it is part of
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         setattr(actor._mapper, setting.field, value)  # noqa: SLF001
 
 
 class Own(Place):
     """Methods of the actor's own, ``_read_NAME`` and ``_write_NAME``: for what does more than change one value."""
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         """Ask the actor."""
         return getattr(actor, f"_read_{setting.field}")()
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         """Call the actor's method."""
         getattr(actor, f"_write_{setting.field}")(value)
 
-    def value_for_copy(self, actor: Any, one: Argument) -> Any:
+    def value_for_copy(self, actor: Any, one: Stored) -> Any:
         """Ask the actor's ``_kept_NAME``, if it has such."""
         ask = getattr(actor, f"_kept_{one.field}", None)
         return super().value_for_copy(actor, one) if ask is None else ask()
@@ -116,11 +121,11 @@ class Effect(Place):
         module, _, name = self._kind.partition(":")
         return getattr(import_module(module), name)
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         """Return all its settings, or False."""
         return actor._shades.get(setting.field, False)  # noqa: SLF001
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         """Turn it on or off."""
         actor._shade(setting.field, self.kind, value)  # noqa: SLF001
 
@@ -128,11 +133,11 @@ class Effect(Place):
 class Switch(Effect):
     """An effect that is on or off and has no settings."""
 
-    def read(self, actor: Any, setting: Setting[Any]) -> bool:
+    def read(self, actor: Any, setting: Stored) -> bool:
         """Return whether it is on."""
         return setting.field in actor._shades  # noqa: SLF001
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         """Turn it on or off."""
         super().write(actor, setting, bool(value))
 
@@ -146,12 +151,12 @@ class Uniform(Place):
         # its `uniform float`
         self.piece, self.uniform = piece, uniform  # of `shaders/resolve`
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         """Return the number."""
         effect = actor.mapper.effects.get(setting.field)
         return setting.default if effect is None else effect.value
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         """Set the number."""
         from pvfiblets.mappers.effects.uniform_effect import UniformEffect
 

@@ -100,7 +100,7 @@ class GlyphSet:
         """Glyphs on slices now; glyphs of hidden slices have not been made."""
         return sum(one.n for one in self._shown)
 
-    def show_on(self, renderer: Any, place: Place) -> None:
+    def show_on(self, renderer: pv.Renderer, place: Place) -> None:
         """Show them on another plane."""
         self._shown.append(_OnPlane(self, renderer, place))
 
@@ -189,7 +189,7 @@ def _sphere(n: int) -> pv.PolyData:
 class _OnPlane:
     """Glyphs in one renderer."""
 
-    def __init__(self, owner: GlyphSet, renderer: Any, place: Place) -> None:
+    def __init__(self, owner: GlyphSet, renderer: pv.Renderer, place: Place) -> None:
         self._owner = weakref.proxy(owner)
         self._renderer, self._place = renderer, place
         self._state: tuple[Any, ...] | None = None

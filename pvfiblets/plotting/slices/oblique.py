@@ -181,7 +181,7 @@ class ObliqueSlice:
             raise TypeError(f"callback is a {type(callback).__name__}; give a function of the normal")
         self._callbacks.append(callback)
 
-    def add_widget(self, plotter: Any, view: Any, **options: Any) -> None:
+    def add_widget(self, plotter: pv.BasePlotter, view: Any, **options: Any) -> None:
         """Add a plane widget of VTK's that turns and pushes the slice, to one of a plotter's views."""
         corners = self.plane.corners
         bounds = np.stack([corners.min(axis=0), corners.max(axis=0)], axis=1).ravel()
@@ -237,7 +237,7 @@ class ObliqueSlice:
 
 
 def add_oblique_slice(
-    workspace: Workspace, plotter: Any, normal: Any, cross_hair_color: Any, color: Any
+    workspace: Workspace, plotter: pv.BasePlotter, normal: Any, cross_hair_color: Any, color: Any
 ) -> ObliqueSlice:
     """Add an oblique slice to the 3-D view of a workspace, and to the plotter's fifth view, if there is one."""
     if workspace.oblique is not None:

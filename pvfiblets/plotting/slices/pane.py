@@ -18,6 +18,7 @@ from pvfiblets.plotting.slices.plane import SliceActor, before_render
 from pvfiblets.slices.frames import PlaneGrid, covered, letters, plane_axes
 
 if TYPE_CHECKING:
+
     from pvfiblets.plotting.slices.plane import SlicePlane
     from pvfiblets.plotting.slices.stack import SliceStack
 
@@ -50,7 +51,7 @@ class Pane:
     """
 
     def __init__(
-        self, stack: SliceStack, orientation: str, renderer: Any, color: Any, plane: SlicePlane | None = None
+        self, stack: SliceStack, orientation: str, renderer: pv.Renderer, color: Any, plane: SlicePlane | None = None
     ) -> None:
         self.stack, self.name, self.renderer, self.plane = stack, orientation, renderer, plane
         self.mirrored = False

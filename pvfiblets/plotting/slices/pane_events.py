@@ -17,6 +17,7 @@ from pvfiblets.plotting.fiblets.mouse_gestures import Pointing
 
 if TYPE_CHECKING:
     import numpy as np
+    from vtkmodules.vtkRenderingCore import vtkRenderWindowInteractor
 
     from pvfiblets.plotting.slices.pane import Pane
     from pvfiblets.plotting.slices.workspace import Workspace
@@ -34,7 +35,7 @@ _TYPED = re.compile(r"^\s*(v?)\s*([^v]*)$")
 class PaneEvents:
     """Gestures of one workspace."""
 
-    def __init__(self, workspace: Workspace, plotter: Any) -> None:
+    def __init__(self, workspace: Workspace, plotter: pv.BasePlotter) -> None:
         self._workspace = weakref.proxy(workspace)  # not kept alive
         self._interactor = plotter.iren.interactor
         self._dragging: tuple[str, Pane, tuple[int, int]] | None = None
@@ -66,7 +67,7 @@ class PaneEvents:
         alive = weakref.ref(self)
         held: list[int] = []
 
-        def call(interactor: Any, _event: str) -> None:
+        def call(interactor: vtkRenderWindowInteractor, _event: str) -> None:
             there = alive()
             if there is not None and handler(there):
                 interactor.GetCommand(held[0]).SetAbortFlag(1)

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
     from pvfiblets.plotting.slices.plane import SlicePlane
 
 
-def picked_on_planes(renderer: Any, planes: Iterable[SlicePlane], x: float, y: float) -> npt.NDArray[np.float64] | None:
+def picked_on_planes(
+    renderer: vtkRenderer, planes: Iterable[SlicePlane], x: float, y: float
+) -> npt.NDArray[np.float64] | None:
     """Return the place nearest to the viewer where a pixel shows a slice."""
     ends = []
     for depth in (0.0, 1.0):

@@ -19,6 +19,8 @@ from pvfiblets.slices.frames import checked_position, covered, grid_of, plane_ax
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
     from pvfiblets.plotting.slices.stack import SliceStack
     from pvfiblets.slices.frames import PlaneGrid
 
@@ -187,7 +189,7 @@ class SlicePlane:
             self.actor.show(self._stack.pixels(self._grid, in_3d=True), self._stack.smooth)
             self._stale = False
 
-    def enter(self, renderer: Any) -> None:
+    def enter(self, renderer: vtkRenderer) -> None:
         """Follow a renderer's frames."""
         self.renderer = renderer
         self._end = before_render(renderer, self, "refresh")
@@ -197,13 +199,13 @@ class SlicePlane:
         self._end()
 
 
-def before_render(renderer: Any, owner: Any, method: str) -> Any:
+def before_render(renderer: vtkRenderer, owner: Any, method: str) -> Any:
     """Call an owner's method whenever a renderer begins to draw; returns and rules as of :func:`on_events`."""
     # `prepare` calls it, too, for renderers that may have nothing to draw.
     return on_events(renderer, ("StartEvent", _PREPARE), owner, method)
 
 
-def on_events(caller: Any, events: tuple[str, ...], owner: Any, method: str) -> Any:
+def on_events(caller: Any, events: tuple[str, ...], owner: Any, method: str) -> Callable[[], None]:
     """Call an owner's method at events of an object of VTK's; neither keeps the other alive."""
     reference = weakref.ref(owner)
 
@@ -226,6 +228,6 @@ def on_events(caller: Any, events: tuple[str, ...], owner: Any, method: str) -> 
     return end
 
 
-def prepare(renderer: Any) -> None:
+def prepare(renderer: vtkRenderer) -> None:
     """Update everything that waits for :func:`before_render`, though the renderer does not draw yet."""
     renderer.InvokeEvent(_PREPARE)

@@ -19,8 +19,6 @@ from vtkmodules.vtkImagingMorphological import vtkImageThresholdConnectivity
 
 from pvfiblets.slices.frames import PlaneGrid
 
-INTERPOLATIONS = ("nearest", "linear", "cubic")
-
 _MODES = {"nearest": 0, "linear": 1, "cubic": 3}  # VTK_RESLICE_NEAREST, VTK_RESLICE_LINEAR, VTK_RESLICE_CUBIC
 
 

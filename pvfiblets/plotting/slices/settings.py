@@ -6,7 +6,7 @@ import math
 from numbers import Integral, Real
 from typing import Any
 
-from pvfiblets.plotting.settings.places import Place
+from pvfiblets.plotting.settings.places import Place, Stored
 from pvfiblets.plotting.settings.settings import Argument, Row, Setting, Settings, truth
 from pvfiblets.plotting.settings.shared import LIMITS, MAPS, Common, colour_map
 
@@ -14,10 +14,10 @@ from pvfiblets.plotting.settings.shared import LIMITS, MAPS, Common, colour_map
 class _Layer(Place):
     """A value of the layer's own; its slices are made anew with the next render."""
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         return actor._state[setting.field]  # noqa: SLF001 - of the class that it is part of
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         actor._write(setting.field, value)  # noqa: SLF001
 
 

@@ -19,6 +19,8 @@ from pvfiblets.slices.frames import ORIENTATIONS, PlaneGrid, checked_frame, chec
 from pvfiblets.slices.image import as_slice_image
 
 if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
     from pvfiblets.plotting.slices.glyph_set import GlyphSet
 
 Array = npt.NDArray[np.float64]
@@ -303,7 +305,7 @@ class SliceStack:
         if glyphs in self._glyphs:
             self._glyphs.remove(glyphs)
 
-    def show_glyphs_on(self, renderer: Any, place: Callable[[], tuple[Array, Array] | None]) -> None:
+    def show_glyphs_on(self, renderer: vtkRenderer, place: Callable[[], tuple[Array, Array] | None]) -> None:
         """Show glyphs on a plane of another renderer, too, including glyphs added later."""
         self._views.append((renderer, place))
         for one in self._glyphs:

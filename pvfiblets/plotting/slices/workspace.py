@@ -56,7 +56,7 @@ class Workspace:
 
     def __init__(
         self,
-        plotter: Any,
+        plotter: pv.BasePlotter,
         slices: SliceStack,
         renderers: Mapping[str, Any],
         *,
@@ -216,7 +216,7 @@ class Workspace:
         layout = "beside" if self._layout == OBLIQUE and not there else self._layout
         return viewports(layout, width / max(height, 1), oblique=there)
 
-    def postpone(self, renderer: Any) -> None:
+    def postpone(self, renderer: pv.Renderer) -> None:
         """Keep a view's picture in the next frame, though it has changed."""
         if self._kept is not None:
             self._kept.postpone(renderer)

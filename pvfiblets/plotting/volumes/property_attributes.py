@@ -9,16 +9,34 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
+
+import pyvista as pv
 
 from pvfiblets.plotting.volumes.settings import LIGHT, SURFACE
 from pvfiblets.volumes.raycast_options import PROJECTIONS
 
-if TYPE_CHECKING:
-    from pvfiblets.plotting.volumes.actor import VolumeActor
-
 _PEAKS = "what peaks and projections show is the colour of a value, which no lamp shines on"
 _RAYS = "rays through a volume have neither lines nor points"
+
+
+class Lit(Protocol):
+    """What of a volume's actor says which attributes are used."""
+
+    @property
+    def prop(self) -> pv.Property:
+        """VTK's settings."""
+        ...
+
+    @property
+    def mode(self) -> str:
+        """What a ray shows."""
+        ...
+
+    @property
+    def shade(self) -> bool:
+        """Whether lamps shine on it."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -54,14 +72,14 @@ _WORDS = {
 class PropertyAttributes:
     """The last state of an actor's property."""
 
-    def __init__(self, actor: VolumeActor) -> None:
+    def __init__(self, actor: Lit) -> None:
         self.note(actor)
 
-    def note(self, actor: VolumeActor) -> None:
+    def note(self, actor: Lit) -> None:
         """Take what the property says as it is."""
         self._prop, self._said = actor.prop, _read(actor.prop)
 
-    def look(self, actor: VolumeActor) -> None:
+    def look(self, actor: Lit) -> None:
         """Warn of changes without effect; a replaced property is taken as it is."""
         prop, known, before = actor.prop, self._prop, self._said
         self.note(actor)
@@ -79,7 +97,7 @@ class PropertyAttributes:
             )
 
 
-def tell_given(actor: VolumeActor, given: Mapping[str, Any]) -> None:
+def tell_given(actor: Lit, given: Mapping[str, Any]) -> None:
     """Warn of arguments of light that change nothing in an actor's mode."""
     unused = {
         name: _instead(word, actor)
@@ -97,13 +115,13 @@ def tell_given(actor: VolumeActor, given: Mapping[str, Any]) -> None:
         )
 
 
-def _used(word: _Word, actor: VolumeActor) -> bool:
+def _used(word: _Word, actor: Lit) -> bool:
     return actor.mode in word.used or (bool(word.light) and actor.mode == LIGHT and actor.shade)
 
 
-def _instead(word: _Word, actor: VolumeActor) -> str:
+def _instead(word: _Word, actor: Lit) -> str:
     return word.light if word.light and actor.mode == LIGHT else word.instead
 
 
-def _read(prop: Any) -> dict[str, Any]:
+def _read(prop: pv.Property) -> dict[str, Any]:
     return {name: getattr(prop, f"Get{word.vtk}")() for name, word in _WORDS.items()}

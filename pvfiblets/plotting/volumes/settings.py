@@ -7,8 +7,8 @@ from numbers import Real
 from typing import Any
 
 from pvfiblets.plotting.settings import shared
-from pvfiblets.plotting.settings.places import OWN, Effect, Own, Place
-from pvfiblets.plotting.settings.settings import Argument, NoSetting, Row, Setting, Settings, truth
+from pvfiblets.plotting.settings.places import OWN, Effect, Own, Place, Stored
+from pvfiblets.plotting.settings.settings import NoSetting, Row, Setting, Settings, truth
 from pvfiblets.volumes.raycast_options import INTEGRATORS, MODES, PROJECTIONS, REFINEMENTS
 from pvfiblets.volumes.volume import FILTERS
 
@@ -24,20 +24,20 @@ SURFACE, LIGHT = "isosurface", "composite"  # modes
 class _Casting(Place):
     """A field of the actor's `RaycastOptions`, which checks it."""
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         return getattr(actor.casting, setting.field)
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         actor._cast({setting.field: value})  # noqa: SLF001 - of the class that it is part of
 
 
 class _Chosen(Own):
     """A source of the ray casting options: stored as given, read as the resulting value."""
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         actor._choose(setting.field, value)  # noqa: SLF001
 
-    def value_for_copy(self, actor: Any, one: Argument) -> Any:
+    def value_for_copy(self, actor: Any, one: Stored) -> Any:
         return actor._choices[one.field]  # noqa: SLF001
 
 
@@ -46,10 +46,10 @@ class _Reflection(Place):
 
     made_with = False
 
-    def read(self, actor: Any, setting: Setting[Any]) -> Any:
+    def read(self, actor: Any, setting: Stored) -> Any:
         return getattr(actor.prop, setting.field)
 
-    def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
+    def write(self, actor: Any, setting: Stored, value: Any) -> None:
         if value is not None:
             setattr(actor.prop, setting.field, float(value))
 

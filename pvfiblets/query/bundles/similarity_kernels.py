@@ -14,13 +14,14 @@ import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
+from ...support.array_types import Float32s, Float64s, Floats, Int32s, Int64s
 
 BLOCK = 128  # streamlines that a thread takes at a time
 SLACK = 1e-3  # mm, for rounding of means to float32
 
 
 @parallel_kernel
-def resample(points: Any, offsets: Any, out: Any) -> None:
+def resample(points: Floats, offsets: Int64s, out: Float32s) -> None:
     """Positions at equal arc length along each streamline, its ends included."""
     n, m = out.shape[0], out.shape[1]
     for block in numba.prange((n + BLOCK - 1) // BLOCK):
@@ -52,7 +53,7 @@ def resample(points: Any, offsets: Any, out: Any) -> None:
 
 
 @kernel
-def _mean_gap(a: Any, b: Any, flipped: bool, limit: float) -> float:
+def _mean_gap(a: Float32s, b: Float32s, flipped: bool, limit: float) -> float:
     """Mean distance of the points of two lines; some number above `limit` if it is above that."""
     n = len(a)
     total, most = 0.0, limit * n
@@ -66,7 +67,7 @@ def _mean_gap(a: Any, b: Any, flipped: bool, limit: float) -> float:
 
 
 @parallel_kernel
-def nearest(lines: Any, others: Any, limit: float, distances: Any, which: Any) -> None:
+def nearest(lines: Float32s, others: Float32s, limit: float, distances: Float64s, which: Int64s) -> None:
     """Nearest of some lines to each line."""
     m, k = lines.shape[1], len(others)
     means = np.zeros((k, 3))
@@ -105,9 +106,8 @@ def pairs(lines: Any, others: Any, out: Any) -> None:
 
 
 @kernel
-def add_to_clusters(
-    lines: Any, first: int, threshold: float, most: int, centroids: Any, means: Any, counts: Any, used: int, labels: Any
-) -> Any:
+def add_to_clusters(lines: Float32s, first: int, threshold: float, most: int, centroids: Float32s, means: Float32s,
+                    counts: Int64s, used: int, labels: Int32s) -> tuple[int, int]:  # fmt: skip
     """Put lines into clusters, one after the other; QuickBundles (Garyfallidis et al. 2012, section 2.3)."""
     n, m, room = lines.shape[0], lines.shape[1], len(counts)
     squares = np.empty(room, np.float32)

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
 from ...codec.jit import parallel_kernel
+from ...support.array_types import Float64s, Int64s
 
 BLOCK = 256  # points a thread looks at in one go
 
 
 @parallel_kernel
-def nearest_labels(
-    points: Any, labels: Any, inverse: Any, linear: Any, offsets: Any, distances: Any, slack: float, radius: float,
-    found: Any,
-) -> None:  # fmt: skip
+def nearest_labels(points: Float64s, labels: Int64s, inverse: Float64s, linear: Float64s, offsets: Int64s,
+                   distances: Float64s, slack: float, radius: float, found: Int64s) -> None:  # fmt: skip
     """Give each point the label of the nearest centre of a labelled voxel, at most a radius away."""
     for block in numba.prange((len(points) + BLOCK - 1) // BLOCK):
         for p in range(block * BLOCK, min((block + 1) * BLOCK, len(points))):

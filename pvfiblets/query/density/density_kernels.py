@@ -8,12 +8,12 @@ streamline.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
+from ...support.array_types import Float64s, Int32s, Int64s
 from .voxel_walk_kernels import clip, end_voxels, faces, voxel_along, within
 
 BLOCK = 2048  # items that a thread takes together
@@ -22,7 +22,7 @@ COUNT, AMOUNT, DIRECTION, VALUE = 0, 1, 2, 3
 
 
 @parallel_kernel
-def place(points: Any, line: Any, corner: Any, linear: Any, u: Any, lengths: Any) -> int:
+def place(points: Float64s, line: Int64s, corner: Float64s, linear: Float64s, u: Float64s, lengths: Float64s) -> int:
     """Positions in voxels ``u`` (n, 3), and lengths (n,) in mm of the segments that begin at points."""
     # Returns how many points are not finite, or so far from the next one that the length is not.
     n = len(points)
@@ -48,7 +48,7 @@ def place(points: Any, line: Any, corner: Any, linear: Any, u: Any, lengths: Any
 
 
 @parallel_kernel
-def count_pieces(u: Any, line: Any, shape: Any, out: Any) -> None:
+def count_pieces(u: Float64s, line: Int64s, shape: tuple[int, int, int], out: Int64s) -> None:
     """At most how many pieces :func:`cut` makes of each item: ``out`` (n,) int64."""
     n = len(u)
     for block in numba.prange((n + BLOCK - 1) // BLOCK):
@@ -66,10 +66,8 @@ def count_pieces(u: Any, line: Any, shape: Any, out: Any) -> None:
 
 
 @parallel_kernel
-def cut(
-    u: Any, line: Any, lengths: Any, shape: Any, starts: Any, a: int, b: int, voxel: Any, item: Any, part: Any,
-    middle: Any,
-) -> float:  # fmt: skip
+def cut(u: Float64s, line: Int64s, lengths: Float64s, shape: tuple[int, int, int], starts: Int64s, a: int, b: int,
+        voxel: Int64s, item: Int64s, part: Float64s, middle: Float64s) -> float:  # fmt: skip
     """Cut the segments of items ``a`` to ``b`` at the faces of voxels."""
     # The loop is that of `.voxel_walk_kernels.walk`, written out: through its arrays, maps take a quarter longer.
     nx, ny, nz = shape
@@ -124,7 +122,8 @@ def cut(
 
 
 @kernel
-def cut_ends(u: Any, offsets: Any, shape: Any, voxel: Any, item: Any, part: Any, middle: Any) -> None:
+def cut_ends(u: Float64s, offsets: Int64s, shape: tuple[int, int, int], voxel: Int64s, item: Int64s, part: Float64s,
+             middle: Float64s) -> None:  # fmt: skip
     """Pieces of :func:`cut` that are the streamlines' end points: two each, all arrays ``(2 * n_streamlines,)``."""
     # A streamline of one point has one end, one without points none.
     nx, ny = shape[0], shape[1]
@@ -141,10 +140,9 @@ def cut_ends(u: Any, offsets: Any, shape: Any, voxel: Any, item: Any, part: Any,
 
 
 @parallel_kernel
-def add_up(
-    what: int, by_length: Any, tiles: int, n: int, voxel: Any, item: Any, part: Any, middle: Any, points: Any,
-    line: Any, lengths: Any, weights: Any, values: Any, per_point: Any, base: int, visitor: Any, sums: Any,
-) -> None:  # fmt: skip
+def add_up(what: int, by_length: bool, tiles: int, n: int, voxel: Int64s, item: Int64s, part: Float64s,
+           middle: Float64s, points: Float64s, line: Int64s, lengths: Float64s, weights: Float64s, values: Float64s,
+           per_point: bool, base: int, visitor: Int32s, sums: Float64s) -> None:  # fmt: skip
     """Add pieces to sums over voxels, in their order whatever the number of threads."""
     # Each thread looks at all pieces, and adds the pieces in its own voxels: reading costs far less than adding.
     for own in numba.prange(tiles):
@@ -180,7 +178,7 @@ def add_up(
 
 
 @kernel
-def count_visits(n: int, voxel: Any, item: Any, owner: Any, visitor: Any, counts: Any) -> None:
+def count_visits(n: int, voxel: Int64s, item: Int64s, owner: Int64s, visitor: Int32s, counts: Int64s) -> None:
     """Add to ``counts`` the voxels that each owner visits; ``owner`` (of each item) never falls from call to call."""
     # `visitor` (n_voxels,) is the last visitor of a voxel, from 1 on.
     for r in range(n):

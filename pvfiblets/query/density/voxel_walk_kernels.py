@@ -11,13 +11,13 @@ Positions ``u`` are in voxels from the grid's corner: faces are at whole numbers
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from ...codec.jit import kernel
+from ...support.array_types import Float64s, Int64s
 
 
 @kernel
-def within(u: Any, i: int, shape: Any) -> bool:
+def within(u: Float64s, i: int, shape: tuple[int, int, int]) -> bool:
     """Whether point ``i`` lies in the grid."""
     return (
         u[i, 0] >= 0.0 and u[i, 0] < shape[0]
@@ -27,7 +27,7 @@ def within(u: Any, i: int, shape: Any) -> bool:
 
 
 @kernel
-def clip(u: Any, i: int, shape: Any) -> Any:
+def clip(u: Float64s, i: int, shape: tuple[int, int, int]) -> tuple[float, float]:
     """Return the shares of segment ``i`` between which it lies in the grid; (1, 0) if nowhere."""
     enter, leave = 0.0, 1.0
     for k in range(3):
@@ -52,7 +52,7 @@ def voxel_along(x: float, n: int) -> int:
 
 
 @kernel
-def end_voxels(u: Any, i: int, shape: Any, enter: float, leave: float) -> Any:
+def end_voxels(u: Float64s, i: int, shape: tuple[int, int, int], enter: float, leave: float) -> tuple[int, ...]:
     """Voxels in which the part of segment ``i`` within the grid begins and ends."""
     ax = u[i, 0] if enter == 0.0 else u[i, 0] + enter * (u[i + 1, 0] - u[i, 0])
     ay = u[i, 1] if enter == 0.0 else u[i, 1] + enter * (u[i + 1, 1] - u[i, 1])
@@ -68,7 +68,7 @@ def end_voxels(u: Any, i: int, shape: Any, enter: float, leave: float) -> Any:
 
 
 @kernel
-def faces(u: Any, i: int, k: int, first: int, last: int) -> Any:
+def faces(u: Float64s, i: int, k: int, first: int, last: int) -> tuple[int, int, int, float]:
     """Return for one axis: the first face crossed, the step to the next, their number, and the segment's extent."""
     # `first` and `last` are rounded where the segment enters and leaves the grid; they never make it turn back.
     d = u[i + 1, k] - u[i, k]
@@ -78,7 +78,9 @@ def faces(u: Any, i: int, k: int, first: int, last: int) -> Any:
 
 
 @kernel
-def walk(u: Any, i: int, shape: Any, strides: Any, on: Any, stops: Any) -> Any:
+def walk(
+    u: Float64s, i: int, shape: tuple[int, int, int], strides: tuple[int, int, int], on: Int64s, stops: Float64s
+) -> tuple[int, float]:
     """Voxels on the way from ``u[i]`` to ``u[i + 1]``, in order: how many, and the share where the first begins."""
     # A voxel counts if some length of the segment lies in it, or one of its ends.
     sx, sy, sz = strides

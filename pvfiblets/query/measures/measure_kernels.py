@@ -6,11 +6,11 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 
 from ...codec.jit import kernel, parallel_kernel
+from ...support.array_types import Float32s, Float64s, Floats, Int64s
 
 LONG_ENOUGH = 4.0  # times the error: curvature times a chord's square; errors in any direction change means by 1 % then
 TURN = 1.0  # radians between chords beyond which they are too long for the curve
@@ -18,7 +18,7 @@ STRAIGHT = 0.1  # radians that errors may turn a line by as a whole: it is strai
 
 
 @kernel
-def _turn(points: Any, i: int, s: int, around: float) -> float:
+def _turn(points: Float64s, i: int, s: int, around: float) -> float:
     """Angle between the chords to points ``s`` before and after over half the length of both, 1/mm."""
     ax, ay, az = points[i, 0] - points[i - s, 0], points[i, 1] - points[i - s, 1], points[i, 2] - points[i - s, 2]
     bx, by, bz = points[i + s, 0] - points[i, 0], points[i + s, 1] - points[i, 1], points[i + s, 2] - points[i, 2]
@@ -32,7 +32,7 @@ def _turn(points: Any, i: int, s: int, around: float) -> float:
 
 
 @kernel
-def _length(points: Any, i: int) -> float:
+def _length(points: Float64s, i: int) -> float:
     """Length of the segment that leads to point ``i``, mm."""
     squares = 0.0
     for axis in range(3):
@@ -41,7 +41,7 @@ def _length(points: Any, i: int) -> float:
 
 
 @parallel_kernel
-def curvatures(points: Any, offsets: Any, error: float, out: Any, bears: Any) -> None:
+def curvatures(points: Float64s, offsets: Int64s, error: float, out: Float32s, bears: Float64s) -> None:
     """Curvature at every point, ``(n_points,)``, 1/mm, over chords that an error of positions, mm, changes little."""
     # `bears` `(n,)` is the error that each line's mean bears, mm: less than the one given where it is too short.
     for line in numba.prange(len(offsets) - 1):
@@ -78,7 +78,7 @@ def curvatures(points: Any, offsets: Any, error: float, out: Any, bears: Any) ->
 
 
 @parallel_kernel
-def arc_lengths(points: Any, offsets: Any, out: Any) -> None:
+def arc_lengths(points: Float64s, offsets: Int64s, out: Floats) -> None:
     """Length of the streamline up to every point, ``(n_points,)``, mm."""
     for s in numba.prange(len(offsets) - 1):
         total = 0.0
@@ -89,7 +89,7 @@ def arc_lengths(points: Any, offsets: Any, out: Any) -> None:
 
 
 @parallel_kernel
-def means(values: Any, offsets: Any, out: Any) -> None:
+def means(values: Float32s, offsets: Int64s, out: Float64s) -> None:
     """Mean of each streamline's values, ``(n,)``; NaN without any."""
     for s in numba.prange(len(out)):
         total = 0.0
@@ -99,7 +99,7 @@ def means(values: Any, offsets: Any, out: Any) -> None:
 
 
 @parallel_kernel
-def least(values: Any, offsets: Any, out: Any) -> None:
+def least(values: Float64s, offsets: Int64s, out: Float64s) -> None:
     """Least of each streamline's values, ``(n,)``; NaN without any."""
     for s in numba.prange(len(out)):
         out[s] = math.nan
@@ -109,7 +109,7 @@ def least(values: Any, offsets: Any, out: Any) -> None:
 
 
 @parallel_kernel
-def resample(points: Any, values: Any, offsets: Any, places: Any, found: Any) -> None:
+def resample(points: Float64s, values: Float64s, offsets: Int64s, places: Float64s, found: Float64s) -> None:
     """Positions and values at places of equal arc length along each streamline, its ends included."""
     # `values` is `(n_points,)` float64; `places` `(n, m, 3)` and `found` `(n, m)` float64 are filled. A value next to a
     # point without one (NaN) is NaN. Where a streamline has no length, all places are its first.

@@ -8,14 +8,18 @@ the chord: where all voxels that hold a disc are in the region, the fiblet passe
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
+from ...support.array_types import Float32s, Float64s, Int64s, UInt8s
 from .index_kernels import LEAF
 from .walk_kernels import ANY, CHANGED, HERE
+
+if TYPE_CHECKING:
+    from .free_space import FreeSpace
 
 ADDED, REMOVED, ALL_FLAGS = 0, 1, 2  # query: of added or removed voxels, whether they are passed; otherwise all flags
 SAME, SURE, GONE, OPEN = 0, 1, 2, 3  # nothing changes for a fiblet; it passes now; it does no more; it must be decoded
@@ -30,7 +34,7 @@ def _signed_byte(code: int) -> float:
 
 
 @kernel
-def _cut(u: Any, k: int, reach: Any, box: Any) -> Any:
+def _cut(u: Float64s, k: int, reach: Float64s, box: Float64s) -> tuple[float, float]:
     """Return the shares of part ``k`` between which it may be in a box of voxels; (1, 0) if nowhere."""
     for axis in range(3):
         a, b = u[k, axis], u[k + 1, axis]
@@ -49,7 +53,7 @@ def _cut(u: Any, k: int, reach: Any, box: Any) -> Any:
 
 
 @kernel
-def _bits(mask: Any, shape: Any, low: Any, high: Any, bit: int, every: bool) -> bool:
+def _bits(mask: UInt8s, shape: tuple[int, int, int], low: Float64s, high: Float64s, bit: int, every: bool) -> bool:
     """Whether some voxel, or every one, that holds positions of a box has a bit of the mask."""
     x0, y0, z0 = math.floor(low[0]), math.floor(low[1]), math.floor(low[2])
     x1, y1, z1 = math.floor(high[0]), math.floor(high[1]), math.floor(high[2])
@@ -69,7 +73,7 @@ def _bits(mask: Any, shape: Any, low: Any, high: Any, bit: int, every: bool) -> 
 
 
 @kernel
-def _free(steps: Any, first: Any, u: Any, k: int, t: float) -> int:
+def _free(steps: UInt8s, first: Int64s, u: Float64s, k: int, t: float) -> int:
     """Voxels from the one at ``t`` of part ``k`` to the nearest of a set, at least."""
     x = min(max(math.floor(u[k, 0] + t * (u[k + 1, 0] - u[k, 0])) - first[0], 0), steps.shape[0] - 1)
     y = min(max(math.floor(u[k, 1] + t * (u[k + 1, 1] - u[k, 1])) - first[1], 0), steps.shape[1] - 1)
@@ -78,7 +82,7 @@ def _free(steps: Any, first: Any, u: Any, k: int, t: float) -> int:
 
 
 @kernel
-def _deep(steps: Any, first: Any, at: Any, k: int, radius: float, rows: Any, slack: float) -> bool:
+def _deep(steps: UInt8s, first: Int64s, at: Float64s, k: int, radius: float, rows: Float64s, slack: float) -> bool:
     """Whether all within a radius, mm, of position ``k`` is farther than 0 from a set, which all beyond a box is in."""
     x, y, z = math.floor(at[k, 0]) - first[0], math.floor(at[k, 1]) - first[1], math.floor(at[k, 2]) - first[2]
     if x < 0 or y < 0 or z < 0 or x >= steps.shape[0] or y >= steps.shape[1] or z >= steps.shape[2]:
@@ -87,12 +91,13 @@ def _deep(steps: Any, first: Any, at: Any, k: int, radius: float, rows: Any, sla
 
 
 @kernel
-def _longest(u: Any, k: int) -> float:
+def _longest(u: Float64s, k: int) -> float:
     return max(abs(u[k + 1, 0] - u[k, 0]), abs(u[k + 1, 1] - u[k, 1]), abs(u[k + 1, 2] - u[k, 2]))
 
 
 @kernel
-def _holds(u: Any, k: int, t: float, reach: Any, mask: Any, shape: Any, inside: int, low: Any, high: Any) -> bool:
+def _holds(u: Float64s, k: int, t: float, reach: Float64s, mask: UInt8s, shape: tuple[int, int, int], inside: int,
+           low: Float64s, high: Float64s) -> bool:  # fmt: skip
     """Whether every voxel that holds positions of the disc across part ``k`` at ``t`` has a bit."""
     for axis in range(3):
         at = u[k, axis] + t * (u[k + 1, axis] - u[k, axis])
@@ -107,8 +112,9 @@ def _holds(u: Any, k: int, t: float, reach: Any, mask: Any, shape: Any, inside: 
 
 
 @kernel
-def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, radius: float, mask: Any, shape: Any,
-           touching: int, inside: int, steps: Any, first: Any, low: Any, high: Any) -> Any:  # fmt: skip
+def _along(u: Float64s, k: int, enter: float, leave: float, reach: Float64s, kept: Float64s, radius: float,
+           mask: UInt8s, shape: tuple[int, int, int], touching: int, inside: int, steps: UInt8s, first: Int64s,
+           low: Float64s, high: Float64s) -> tuple[bool, bool]:  # fmt: skip
     widest = max(reach[0], reach[1], reach[2])
     if not widest <= WIDEST:
         return True, False
@@ -152,8 +158,9 @@ def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, ra
 
 
 @kernel
-def _part(u: Any, k: int, kept: Any, radius: float, rows: Any, slack: float, box: Any, mask: Any, shape: Any,
-          touching: int, inside: int, steps: Any, first: Any, reach: Any, low: Any, high: Any) -> Any:  # fmt: skip
+def _part(u: Float64s, k: int, kept: Float64s, radius: float, rows: Float64s, slack: float, box: Float64s, mask: UInt8s,
+          shape: tuple[int, int, int], touching: int, inside: int, steps: UInt8s, first: Int64s, reach: Float64s,
+          low: Float64s, high: Float64s) -> tuple[bool, bool]:  # fmt: skip
     """Whether part ``k`` may meet voxels of the bit ``touching``, and surely meets voxels of the bit ``inside``."""
     # `inside` 0: not asked.
     for axis in range(3):
@@ -165,9 +172,10 @@ def _part(u: Any, k: int, kept: Any, radius: float, rows: Any, slack: float, box
 
 
 @kernel
-def _fiblet(u: Any, parts: int, only: int, kept: Any, pieces: Any, row: int, unit: float, rows: Any, slack: float,
-            box: Any, mask: Any, shape: Any, touching: int, inside: int, steps: Any, first: Any, reach: Any,
-            low: Any, high: Any) -> Any:  # fmt: skip
+def _fiblet(u: Float64s, parts: int, only: int, kept: Float64s, pieces: UInt8s, row: int, unit: float, rows: Float64s,
+            slack: float, box: Float64s, mask: UInt8s, shape: tuple[int, int, int], touching: int, inside: int,
+            steps: UInt8s, first: Int64s, reach: Float64s, low: Float64s,
+            high: Float64s) -> tuple[bool, bool]:  # fmt: skip
     """The same of a whole fiblet, or of its parts whose bits are in `only`."""
     touches = False
     for k in range(parts):
@@ -185,8 +193,8 @@ def _fiblet(u: Any, parts: int, only: int, kept: Any, pieces: Any, row: int, uni
 
 
 @kernel
-def _place(k: int, pieces: Any, row: int, leaves: Any, leaf: int, unit: float, linear: Any, mean: Any, kept: Any,
-           u: Any) -> None:  # fmt: skip
+def _place(k: int, pieces: UInt8s, row: int, leaves: Float32s, leaf: int, unit: float, linear: Float64s, mean: Float64s,
+           kept: Float64s, u: Float64s) -> None:  # fmt: skip
     """Position ``k`` of a fiblet in mm and in voxels."""
     x = unit * _signed_byte(pieces[row, 3 * k])
     y = unit * _signed_byte(pieces[row, 3 * k + 1])
@@ -198,7 +206,9 @@ def _place(k: int, pieces: Any, row: int, leaves: Any, leaf: int, unit: float, l
 
 
 @kernel
-def _apart(pieces: Any, row: int, k: int, parts: int, centre: Any, box: Any, unit: float, radius: float) -> bool:
+def _apart(
+    pieces: UInt8s, row: int, k: int, parts: int, centre: Float64s, box: Float64s, unit: float, radius: float
+) -> bool:
     """Whether part ``k`` of a fiblet lies beyond one face of a box along the axes of mm: told without its voxels."""
     reach = radius * pieces[row, 3 * parts + 3 + k] * (1.0 + 1e-9)
     for axis in range(3):
@@ -211,8 +221,8 @@ def _apart(pieces: Any, row: int, k: int, parts: int, centre: Any, box: Any, uni
 
 
 @kernel
-def _clear(mean: Any, k: int, leaves: Any, leaf: int, rows: Any, slack: float, box: Any, steps: Any, first: Any,
-           reach: Any) -> bool:  # fmt: skip
+def _clear(mean: Float64s, k: int, leaves: Float32s, leaf: int, rows: Float64s, slack: float, box: Float64s,
+           steps: UInt8s, first: Int64s, reach: Float64s) -> bool:  # fmt: skip
     """Whether the capsule of part ``k`` of a leaf meets no voxel of a set in a box."""
     for axis in range(3):
         reach[axis] = float(leaves[leaf, 3 * len(mean) + k]) * rows[axis] * (1.0 + 1e-9) + slack
@@ -227,8 +237,8 @@ def _clear(mean: Any, k: int, leaves: Any, leaf: int, rows: Any, slack: float, b
 
 
 @parallel_kernel
-def close_parts(near: Any, leaves: Any, parts: int, linear: Any, corner: Any, rows: Any, box: Any, free: Any,
-                found: Any) -> None:  # fmt: skip
+def close_parts(near: Int64s, leaves: Float32s, parts: int, linear: Float64s, corner: Float64s, rows: Float64s,
+                box: Float64s, free: FreeSpace, found: UInt8s) -> None:  # fmt: skip
     """Bits of the parts of some leaves whose capsules come near voxels in a box, ``found (n,)`` uint8."""
     # `free` is the box's `.FreeSpace` about these voxels.
     steps, first = free
@@ -245,7 +255,7 @@ def close_parts(near: Any, leaves: Any, parts: int, linear: Any, corner: Any, ro
 
 
 @kernel
-def _mean(leaves: Any, leaf: int, nodes: int, linear: Any, corner: Any, mean: Any) -> float:
+def _mean(leaves: Float32s, leaf: int, nodes: int, linear: Float64s, corner: Float64s, mean: Float64s) -> float:
     """Mean course of a leaf in voxels, and by how much rounding may be wrong."""
     largest = 0.0
     for k in range(nodes):
@@ -259,9 +269,10 @@ def _mean(leaves: Any, leaf: int, nodes: int, linear: Any, corner: Any, mean: An
 
 
 @parallel_kernel
-def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stretch: int, stretch: int, states: Any,
-           asked: int, linear: Any, corner: Any, rows: Any, mask: Any, shape: Any, changed: Any, whole: Any,
-           in_mm: Any, about_changed: Any, about_whole: Any, within: Any, found: Any) -> None:  # fmt: skip
+def settle(near: Int64s, bits: UInt8s, leaves: Float32s, pieces: UInt8s, parts: int, per_stretch: int, stretch: int,
+           states: UInt8s, asked: int, linear: Float64s, corner: Float64s, rows: Float64s, mask: UInt8s,
+           shape: tuple[int, int, int], changed: Float64s, whole: Float64s, in_mm: Float64s, about_changed: FreeSpace,
+           about_whole: FreeSpace, within: FreeSpace, found: UInt8s) -> None:  # fmt: skip
     """Compute the new state of the fiblets of some leaves, ``found (n, LEAF)`` uint8: :data:`SAME` and so on."""
     changed_steps, changed_first = about_changed
     whole_steps, whole_first = about_whole

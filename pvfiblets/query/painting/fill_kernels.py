@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ...codec.jit import kernel
+from ...support.array_types import Bools, Int64s
 
 
 @kernel
-def connected(open_: Any, shape: Any, seed: int) -> Any:
+def connected(open_: Bools, shape: tuple[int, int, int], seed: int) -> Int64s:
     """Flat places of open voxels that are joined to a seed by faces, ``(n,)`` int64; none if it is not open."""
     # `open_` is flat in C order, bool; it is closed where the result goes.
     nx, ny, nz = shape

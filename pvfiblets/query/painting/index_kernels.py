@@ -7,15 +7,15 @@ beside their leaf's, and a radius: every point of the fiblet lies within it of t
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
-from ...codec.kernels.capsule_kernels import end_part
+from ...codec.kernels.capsule_kernels import anchor_part, end_part
 from ...codec.kernels.decode_kernels import decode_one
 from ...codec.layout import PAGE_BITS
+from ...support.array_types import Bools, Float32s, Float64s, Int64s, UInt8s, UInt16s, UInt32s
 
 LEAF = 32
 BLOCK = 1024
@@ -24,27 +24,20 @@ UP = 1.0 + 1e-6  # rounds a length in float32 up
 
 
 @kernel
-def _anchor(anchors: Any, low: Any, fine: bool, f: int, axis: int) -> float:
-    word = anchors[f, axis // 2]
-    q = float((word >> 16) & 0xFFFF) if axis == 1 else float(word & 0xFFFF)
-    return q * 65536.0 + float(low[f, axis]) if fine else q
-
-
-@kernel
-def next_anchor(anchors: Any, low: Any, fine: bool, origin: Any, scale: Any, f: int, out: Any, row: int) -> int:
+def next_anchor(
+    anchors: UInt32s, low: UInt16s, fine: bool, origin: Float64s, scale: Float64s, f: int, out: Float64s, row: int
+) -> int:
     """Write the first point of the next fiblet, which this one leads to, into a row; how many that is: 0 or 1."""
     if anchors[f, 1] >> 31 or f + 1 >= len(anchors):
         return 0
     for axis in range(3):
-        out[row, axis] = scale[axis] * _anchor(anchors, low, fine, f + 1, axis) + origin[axis]
+        out[row, axis] = scale[axis] * anchor_part(anchors, low, fine, f + 1, axis) + origin[axis]
     return 1
 
 
 @parallel_kernel
-def chords(
-    first: int, anchors: Any, low: Any, fine: bool, ends: Any, bases: Any, origin: Any, scale: Any, end_scale: float,
-    out: Any,
-) -> None:  # fmt: skip
+def chords(first: int, anchors: UInt32s, low: UInt16s, fine: bool, ends: UInt32s, bases: Int64s, origin: Float64s,
+           scale: Float64s, end_scale: float, out: Float32s) -> None:  # fmt: skip
     """Chords of consecutive fiblets from `first` on, ``out`` (n, 6) float32 mm, all turned to one half of space."""
     for block in numba.prange((len(out) + BLOCK - 1) // BLOCK):
         c = np.empty(6)
@@ -52,11 +45,11 @@ def chords(
             f = first + k
             rank = bases[f >> PAGE_BITS] + ((anchors[f, 1] >> 16) & 0x3FFF)
             for axis in range(3):
-                a = scale[axis] * _anchor(anchors, low, fine, f, axis)
+                a = scale[axis] * anchor_part(anchors, low, fine, f, axis)
                 if anchors[f, 1] >> 31 or f + 1 >= len(anchors):
                     b = a + end_scale * (end_part(np.int64(ends[rank]), axis) if rank < len(ends) else 0)
                 else:
-                    b = scale[axis] * _anchor(anchors, low, fine, f + 1, axis)
+                    b = scale[axis] * anchor_part(anchors, low, fine, f + 1, axis)
                 c[axis], c[3 + axis] = a + origin[axis], b + origin[axis]
             turned = _turned(c[3] - c[0], c[4] - c[1], c[5] - c[2])
             for axis in range(3):
@@ -74,7 +67,7 @@ def _turned(x: float, y: float, z: float) -> bool:
 
 
 @kernel
-def _widest(keys: Any, lo: int, hi: int) -> int:
+def _widest(keys: Float32s, lo: int, hi: int) -> int:
     best, widest = 0, -1.0
     for d in range(6):
         low, high = keys[lo, d], keys[lo, d]
@@ -86,14 +79,14 @@ def _widest(keys: Any, lo: int, hi: int) -> int:
 
 
 @kernel
-def _swap(keys: Any, order: Any, i: int, j: int) -> None:
+def _swap(keys: Float32s, order: Int64s, i: int, j: int) -> None:
     for d in range(6):
         keys[i, d], keys[j, d] = keys[j, d], keys[i, d]
     order[i], order[j] = order[j], order[i]
 
 
 @kernel
-def _split(keys: Any, order: Any, lo: int, hi: int) -> int:
+def _split(keys: Float32s, order: Int64s, lo: int, hi: int) -> int:
     """Part rows ``lo`` to ``hi`` at the median of their widest column, at a multiple of a leaf; where that is."""
     middle = lo + LEAF * (((hi - lo + LEAF - 1) // LEAF + 1) // 2)
     d = _widest(keys, lo, hi)
@@ -120,7 +113,7 @@ def _split(keys: Any, order: Any, lo: int, hi: int) -> int:
 
 
 @parallel_kernel
-def sort_once(keys: Any, order: Any, parts: Any, middles: Any) -> None:
+def sort_once(keys: Float32s, order: Int64s, parts: Int64s, middles: Int64s) -> None:
     """Part each of some ranges of rows ``parts (n, 2)`` in two; ``middles (n,)`` is filled."""
     for p in numba.prange(len(parts)):
         lo, hi = parts[p, 0], parts[p, 1]
@@ -128,7 +121,7 @@ def sort_once(keys: Any, order: Any, parts: Any, middles: Any) -> None:
 
 
 @parallel_kernel
-def sort_parts(keys: Any, order: Any, parts: Any) -> None:
+def sort_parts(keys: Float32s, order: Int64s, parts: Int64s) -> None:
     """Part ranges of rows until none is larger than a leaf."""
     for p in numba.prange(len(parts)):
         stack = np.empty((128, 2), np.int64)
@@ -149,7 +142,7 @@ def sort_parts(keys: Any, order: Any, parts: Any) -> None:
 
 
 @kernel
-def _apart(p: Any, a: Any, b: Any) -> float:
+def _apart(p: Float64s, a: Float64s, b: Float64s) -> float:
     """Distance of a point from a segment, each (3,)."""
     dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     x, y, z = p[0] - a[0], p[1] - a[1], p[2] - a[2]
@@ -167,10 +160,9 @@ def _node(k: int, parts: int, n: int, turned: bool) -> int:
 
 
 @parallel_kernel
-def leaf_pieces(
-    order: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any, parts: int,
-    leaves: Any, pieces: Any, damaged: Any,
-) -> None:  # fmt: skip
+def leaf_pieces(order: UInt32s, arrays: tuple[UInt32s, UInt32s, UInt8s, Int64s], low: UInt16s, fine: bool,
+                origin: Float64s, scale: Float64s, steps: tuple[float, float, float], tables: Float64s, parts: int,
+                leaves: Float32s, pieces: UInt8s, damaged: Bools) -> None:  # fmt: skip
     """Decode all fiblets and keep them coarsely; :class:`.FibletIndex` describes the filled arrays."""
     # `order (n,)` are the fiblets, the other arrays as in `.decode_kernels.decode`.
     nodes = parts + 1
@@ -233,7 +225,7 @@ def leaf_pieces(
 
 
 @parallel_kernel
-def leaf_boxes(leaves: Any, parts: int, out: Any) -> None:
+def leaf_boxes(leaves: Float32s, parts: int, out: Float32s) -> None:
     """Boxes along the axes that hold leaves, ``out (n, 6)`` float32 mm: lower and upper corners."""
     for leaf in numba.prange(len(leaves)):
         for axis in range(3):
@@ -247,7 +239,7 @@ def leaf_boxes(leaves: Any, parts: int, out: Any) -> None:
 
 
 @parallel_kernel
-def near_leaves(held: Any, box: Any, found: Any) -> None:
+def near_leaves(held: Float32s, box: Float64s, found: Bools) -> None:
     """Leaves whose boxes ``(n_leaves, 6)`` meet one ``(6,)``, mm: ``found (n_leaves,)`` bool."""
     for block in numba.prange((len(held) + BLOCK - 1) // BLOCK):
         for k in range(block * BLOCK, min((block + 1) * BLOCK, len(held))):

@@ -10,6 +10,7 @@ import numpy as np
 from ...codec.jit import kernel, parallel_kernel
 from ...codec.kernels.decode_kernels import decode_one
 from ...codec.layout import PAGE_BITS
+from ...support.array_types import Bools, Float64s, Int32s, Int64s, UInt8s, UInt16s, UInt32s
 from ..density.voxel_walk_kernels import walk, within
 from .index_kernels import ROWS, next_anchor
 
@@ -21,14 +22,14 @@ BLOCK = 64
 
 
 @kernel
-def _voxel_of(u: Any, i: int, shape: Any) -> int:
+def _voxel_of(u: Float64s, i: int, shape: tuple[int, int, int]) -> int:
     if not within(u, i, shape):
         return -1
     return (int(u[i, 0]) * shape[1] + int(u[i, 1])) * shape[2] + int(u[i, 2])
 
 
 @kernel
-def _place(points: Any, a: int, b: int, linear: Any, corner: Any, u: Any) -> None:
+def _place(points: Float64s, a: int, b: int, linear: Float64s, corner: Float64s, u: Float64s) -> None:
     for i in range(a, b):
         x, y, z = points[i, 0] - corner[0], points[i, 1] - corner[1], points[i, 2] - corner[2]
         for k in range(3):
@@ -36,8 +37,9 @@ def _place(points: Any, a: int, b: int, linear: Any, corner: Any, u: Any) -> Non
 
 
 @parallel_kernel
-def look(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any,
-         linear: Any, corner: Any, mask: Any, shape: Any, found: Any) -> None:  # fmt: skip
+def look(places: Int64s, order: UInt32s, arrays: tuple[UInt32s, UInt32s, UInt8s, Int64s], low: UInt16s, fine: bool,
+         origin: Float64s, scale: Float64s, steps: tuple[float, float, float], tables: Float64s, linear: Float64s,
+         corner: Float64s, mask: UInt8s, shape: tuple[int, int, int], found: UInt8s) -> None:  # fmt: skip
     """Flags of fiblets: ``found (m,)`` uint8; :data:`BAD` for a record that points beyond the arrays."""
     # `order[places]` are the fiblets, the arrays up to `tables` as in `.decode_kernels.decode`; `mask` is flat, in C
     # order, 1 in the region.
@@ -69,7 +71,7 @@ def look(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: Any,
 
 
 @kernel
-def _apart_from(u: Any, i: int, box: Any) -> bool:
+def _apart_from(u: Float64s, i: int, box: Float64s) -> bool:
     """Whether a segment lies beyond one face of a box of voxels, by more than one."""
     for axis in range(3):
         a, b = u[i, axis], u[i + 1, axis]
@@ -79,8 +81,10 @@ def _apart_from(u: Any, i: int, box: Any) -> bool:
 
 
 @parallel_kernel
-def passes(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any,
-           linear: Any, corner: Any, mask: Any, bit: int, box: Any, shape: Any, found: Any) -> None:  # fmt: skip
+def passes(places: Int64s, order: UInt32s, arrays: tuple[UInt32s, UInt32s, UInt8s, Int64s], low: UInt16s, fine: bool,
+           origin: Float64s, scale: Float64s, steps: tuple[float, float, float], tables: Float64s, linear: Float64s,
+           corner: Float64s, mask: UInt8s, bit: int, box: Float64s, shape: tuple[int, int, int],
+           found: UInt8s) -> None:  # fmt: skip
     """Whether fiblets meet voxels with a bit of ``mask``, all within ``box (6,)``; ``found (m,)`` uint8."""
     # Other parameters, and what `BAD` means, as for `look`.
     most, strides = shape[0] + shape[1] + shape[2] + 4, (shape[1] * shape[2], shape[2], 1)
@@ -107,7 +111,7 @@ def passes(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: An
 
 
 @parallel_kernel
-def lines_of(places: Any, order: Any, anchors: Any, bases: Any, ids: Any, lines: Any) -> None:
+def lines_of(places: Int64s, order: UInt32s, anchors: UInt32s, bases: Int64s, ids: Int64s, lines: Int64s) -> None:
     """Streamlines of the fiblets ``order[places]``, ``lines (m,)`` int64; -1 where a damaged file leads to none."""
     # `bases` and `ids` lead to them (`ids` empty: ranks are streamlines).
     for k in numba.prange(len(places)):
@@ -119,8 +123,8 @@ def lines_of(places: Any, order: Any, anchors: Any, bases: Any, ids: Any, lines:
 
 
 @kernel
-def apply(places: Any, lines: Any, found: Any, order: Any, anchors: Any, states: Any, n_any: Any, n_out: Any,
-          ends: Any) -> int:  # fmt: skip
+def apply(places: Int64s, lines: Int64s, found: UInt8s, order: UInt32s, anchors: UInt32s, states: UInt8s, n_any: Int32s,
+          n_out: Int32s, ends: UInt8s) -> int:  # fmt: skip
     """Take new flags of fiblets over; returns by how many more streamlines the region is passed."""
     # `order[places]` are the fiblets, of `lines_of`, `states (n_fiblets,)` the flags before, in that order. Of
     # streamlines, `n_any, n_out` count fiblets and `ends` holds FIRST and LAST. Where `n_out` is empty, only ANY is
@@ -146,7 +150,9 @@ def apply(places: Any, lines: Any, found: Any, order: Any, anchors: Any, states:
 
 
 @kernel
-def _ordered(u: Any, n: int, shape: Any, labels: Any, wanted: Any, on: Any, stops: Any) -> bool:
+def _ordered(
+    u: Float64s, n: int, shape: tuple[int, int, int], labels: UInt16s, wanted: Int64s, on: Int64s, stops: Float64s
+) -> bool:
     strides = (shape[1] * shape[2], shape[2], 1)
     next_, at = 0, _voxel_of(u, 0, shape)
     while next_ < len(wanted) and at >= 0 and labels[at] == wanted[next_]:
@@ -160,8 +166,8 @@ def _ordered(u: Any, n: int, shape: Any, labels: Any, wanted: Any, on: Any, stop
 
 
 @parallel_kernel
-def in_order(points: Any, offsets: Any, linear: Any, corner: Any, labels: Any, shape: Any, wanted: Any, either: bool,
-             found: Any) -> None:  # fmt: skip
+def in_order(points: Float64s, offsets: Int64s, linear: Float64s, corner: Float64s, labels: UInt16s,
+             shape: tuple[int, int, int], wanted: Int64s, either: bool, found: Bools) -> None:  # fmt: skip
     """Whether streamlines come through labels in an order, ``found (n,)`` bool; `either`: or in the reverse one."""
     for s in numba.prange(len(found)):
         a, b = offsets[s], offsets[s + 1]

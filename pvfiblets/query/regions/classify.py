@@ -35,7 +35,9 @@ import numpy.typing as npt
 
 from ...codec.decompress import fixed
 from ...codec.jit import kernel, parallel_kernel
+from ...support.array_types import Float32s, Float64s, Int8s, Int32s
 from .placement import positions
+from .region import largest_stretch, pack_rows
 from .shape_kernels import unit
 
 if TYPE_CHECKING:
@@ -65,19 +67,6 @@ class Packed:
         return self.ops, self.rows, self.grids, self.values
 
 
-def pack_rows(region: Region) -> tuple[npt.NDArray[np.int32], Array]:
-    """Return ``ops`` and ``rows`` as if no shape had a field."""
-    rows = np.zeros((len(region.leaves), 20))
-    for row, leaf in zip(rows, region.leaves, strict=True):
-        row[0] = leaf.kind
-        row[1:10] = leaf.linear.ravel()
-        row[10:13] = leaf.centre
-        row[13] = _largest(leaf.linear)
-        row[14:17] = np.linalg.norm(leaf.linear, axis=1) * (1.0 + 1e-12)
-        row[17] = -1.0
-    return np.array(region.program, np.int32), rows
-
-
 @lru_cache(maxsize=4)
 def pack(region: Region) -> Packed:
     """Return a region as arrays, for kernels; the last few are kept. Makes the fields that are not there yet."""
@@ -94,16 +83,12 @@ def pack(region: Region) -> Packed:
             sizes = field.values.shape[::-1]
             grids.append([*field.origin, *field.spacing, *field.steps, *sizes, start, 0.0, 0.0, 0.0])
             start += field.values.size
-        row[13] = _largest(leaf.linear * (field.steps / field.spacing)[:, None])
+        row[13] = largest_stretch(leaf.linear * (field.steps / field.spacing)[:, None])
         row[17] = list(fields).index(id(field))
         row[18] = float(field.whole)
     values = [field.values.ravel() for field in fields.values()]
     flat = values[0] if len(values) == 1 else np.concatenate([*values, np.zeros(1, np.float32)])
     return Packed(ops, rows, np.array(grids).reshape(-1, 16), fixed(flat), tuple(fields.values()))
-
-
-def _largest(linear: Array) -> float:
-    return float(np.linalg.svd(linear, compute_uv=False)[0]) * (1.0 + 1e-12)
 
 
 def classify(region: Region, centres: npt.ArrayLike, radii: npt.ArrayLike) -> npt.NDArray[np.int8]:
@@ -140,7 +125,9 @@ def classify(region: Region, centres: npt.ArrayLike, radii: npt.ArrayLike) -> np
 
 
 @parallel_kernel
-def _classify(ops: Any, rows: Any, grids: Any, values: Any, centres: Any, radii: Any, out: Any) -> None:
+def _classify(
+    ops: Int32s, rows: Float64s, grids: Float64s, values: Float32s, centres: Float64s, radii: Float64s, out: Int8s
+) -> None:
     for i in numba.prange(len(centres)):
         out[i] = classify_ball(ops, rows, grids, values, centres[i, 0], centres[i, 1], centres[i, 2], radii[i])
 
@@ -151,7 +138,8 @@ def _side(inside: bool, outside: bool) -> int:
 
 
 @kernel
-def _field_side(row: Any, grid: Any, values: Any, u: Any, slack: Any, r: float) -> int:
+def _field_side(row: Float64s, grid: Float64s, values: Float32s, u: tuple[float, float, float],
+                slack: tuple[float, float, float], r: float) -> int:  # fmt: skip
     """Side of a ball by a field; ``u`` are the centre's unit coordinates, off by ``slack`` at most."""
     q0, q1, q2 = (u[0] - grid[0]) / grid[3], (u[1] - grid[1]) / grid[4], (u[2] - grid[2]) / grid[5]
     nx, ny, nz = grid[9], grid[10], grid[11]
@@ -190,7 +178,7 @@ def _field_side(row: Any, grid: Any, values: Any, u: Any, slack: Any, r: float) 
 
 
 @kernel
-def _leaf_side(row: Any, grids: Any, values: Any, x: float, y: float, z: float, r: float) -> int:
+def _leaf_side(row: Float64s, grids: Float64s, values: Float32s, x: float, y: float, z: float, r: float) -> int:
     u = unit(row, x, y, z)
     dx, dy, dz = abs(x - row[10]) + r, abs(y - row[11]) + r, abs(z - row[12]) + r
     # The differences were rounded relative to themselves, the products and sums relative to these.
@@ -225,7 +213,9 @@ def _leaf_side(row: Any, grids: Any, values: Any, x: float, y: float, z: float, 
 
 
 @kernel
-def classify_ball(ops: Any, rows: Any, grids: Any, values: Any, x: float, y: float, z: float, r: float) -> int:
+def classify_ball(
+    ops: Int32s, rows: Float64s, grids: Float64s, values: Float32s, x: float, y: float, z: float, r: float
+) -> int:
     """Side of one ball: +1, -1 or 0; the arrays are as in :class:`Packed`."""
     if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(z) and math.isfinite(r)):
         return 0

@@ -8,12 +8,13 @@ import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
+from ...support.array_types import Bools, Float32s, Float64s, Int64s, UInt8s
 
 _FAR = 1e37  # squared mm where no voxel is: finite, so that differences are
 
 
 @kernel
-def _lower_envelope(line: Any, out: Any, size: float, places: Any, starts: Any) -> None:
+def _lower_envelope(line: Float64s, out: Float64s, size: float, places: Int64s, starts: Float64s) -> None:
     """One dimension: ``out[i] = min over j of line[j] + (size (i - j))^2``; ``places``, ``starts`` are for scratch."""
     n = len(line)
     square = size * size
@@ -47,7 +48,7 @@ def _lower_envelope(line: Any, out: Any, size: float, places: Any, starts: Any) 
 
 
 @parallel_kernel
-def _along_x(targets: Any, squares: Any, size: float) -> None:
+def _along_x(targets: Bools, squares: Float32s, size: float) -> None:
     nz, ny, nx = targets.shape
     for z in numba.prange(nz):
         line, out = np.empty(nx), np.empty(nx)
@@ -61,7 +62,7 @@ def _along_x(targets: Any, squares: Any, size: float) -> None:
 
 
 @parallel_kernel
-def _along_y(squares: Any, size: float) -> None:
+def _along_y(squares: Float32s, size: float) -> None:
     nz, ny, nx = squares.shape
     for z in numba.prange(nz):
         line, out = np.empty(ny), np.empty(ny)
@@ -74,31 +75,17 @@ def _along_y(squares: Any, size: float) -> None:
                 squares[z, y, x] = out[y]
 
 
-@parallel_kernel
-def _along_z(squares: Any, size: float) -> None:
-    nz, ny, nx = squares.shape
-    for y in numba.prange(ny):
-        line, out = np.empty(nz), np.empty(nz)
-        places, starts = np.empty(nz, np.int64), np.empty(nz)
-        for x in range(nx):
-            for z in range(nz):
-                line[z] = squares[z, y, x]
-            _lower_envelope(line, out, size, places, starts)
-            for z in range(nz):
-                squares[z, y, x] = out[z]
-
-
 def squared_distances(targets: Any, sizes: Any) -> Any:
     """Squared distances of voxel centres from the nearest target's centre."""
     squares = np.empty(targets.shape, np.float32)
     _along_x(targets, squares, float(sizes[0]))
     _along_y(squares, float(sizes[1]))
-    _along_z(squares, float(sizes[2]))
+    _along_y(squares.swapaxes(0, 1), float(sizes[2]))  # along z
     return squares
 
 
 @parallel_kernel
-def _block_states(mask: Any, block: int, out: Any) -> None:
+def _block_states(mask: Bools, block: int, out: UInt8s) -> None:
     nz, ny, nx = out.shape
     ni, nj, nk = mask.shape
     for z in numba.prange(nz):
@@ -126,7 +113,7 @@ def block_states(mask: Any, block: int) -> Any:
 
 
 @parallel_kernel
-def look_up(mask: Any, linear: Any, centre: Any, places: Any, out: Any) -> None:
+def look_up(mask: Bools, linear: Float64s, centre: Float64s, places: Float64s, out: Bools) -> None:
     """Look up in ``mask`` (i, j, k) the voxels nearest to ``linear (places - centre)``, into ``out`` (n,) bool."""
     ni, nj, nk = mask.shape
     for i in numba.prange(len(places)):

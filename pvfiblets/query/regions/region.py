@@ -10,7 +10,7 @@ A position with a coordinate that is not finite lies in no region, not in ``~reg
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +19,7 @@ from ...images.affines import affine, invert_affine
 from .placement import Bounds, positions
 
 if TYPE_CHECKING:
-    from .shapes import Shape
+    from .fields import Field
 
 Array = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -104,7 +104,6 @@ class Region:
         ValueError
             If the points are not three numbers each.
         """
-        from .classify import pack_rows
         from .shape_kernels import evaluate
 
         places = np.ascontiguousarray(positions(points))
@@ -200,6 +199,133 @@ class Region:
                 b, a = stack.pop(), stack.pop()
                 stack.append(f"({a} {'&' if op == AND else '|'} {b})")
         return stack[0]
+
+
+class Shape(Region):
+    """One shape.
+
+    Parameters
+    ----------
+    kind : int
+        One of :data:`PLANE` … :data:`LABELS`.
+    linear : numpy.ndarray
+        ``(3, 3)``, ``A`` of :mod:`.shapes`.
+    centre : numpy.ndarray
+        ``(3,)`` mm, ``c`` of :mod:`.shapes`.
+    """
+
+    def __init__(self, kind: int, linear: Array, centre: Array) -> None:
+        self._kind = kind
+        self._linear = np.array(linear, np.float64) + 0.0  # no -0.0: it would make equal shapes differ by their bytes
+        self._centre = np.array(centre, np.float64) + 0.0
+        self._linear.flags.writeable = self._centre.flags.writeable = False
+        super().__init__((self,), (0,))
+
+    @property
+    def kind(self) -> int:
+        """Kind of unit shape."""
+        return self._kind
+
+    @property
+    def linear(self) -> Array:
+        """``(3, 3)`` float64, ``A`` of :mod:`.shapes`: unit coordinates per mm."""
+        return self._linear
+
+    @property
+    def centre(self) -> Array:
+        """``(3,)`` float64 mm, ``c`` of :mod:`.shapes`: the position whose unit coordinates are 0."""
+        return self._centre
+
+    @property
+    def matrix(self) -> Array:
+        """``(4, 4)`` float64: world mm to unit coordinates, column vectors."""
+        found = np.eye(4)
+        found[:3, :3] = self._linear
+        found[:3, 3] = -(self._linear @ self._centre)
+        return found
+
+    @property
+    def field(self) -> Field | None:
+        """Signed distance bounds on a grid, for surfaces and labels; None for the others."""
+        return None
+
+    @property
+    def _data(self) -> object:
+        """Key among shapes of one kind and place; compared by identity."""
+        return None
+
+    def placed(self, matrix: Array) -> Shape:
+        """Return the shape as placed by an affine ``(4, 4)`` matrix known to be good."""
+        inverse = np.linalg.inv(matrix[:3, :3])
+        other: Shape = object.__new__(type(self))
+        other.__dict__.update(self._shared())
+        Shape.__init__(other, self._kind, self._linear @ inverse, matrix[:3, :3] @ self._centre + matrix[:3, 3])
+        return other
+
+    def _shared(self) -> dict[str, Any]:
+        """Return data that a moved copy shares with the shape."""
+        return {}
+
+    def _unit(self, points: Array) -> tuple[Array, Array, Array]:
+        # Written out: a matrix product's order of summation is the library's, that of the kernels is this one.
+        x, y, z = (points - self._centre).T
+        a = self._linear
+        return (
+            a[0, 0] * x + a[0, 1] * y + a[0, 2] * z,
+            a[1, 0] * x + a[1, 1] * y + a[1, 2] * z,
+            a[2, 0] * x + a[2, 1] * y + a[2, 2] * z,
+        )
+
+    def holds(self, points: Array) -> Flags | None:  # noqa: ARG002 - of other shapes
+        """Return ``(n,)`` bool: which points are in; None of shapes that the kernels of :mod:`.shape_kernels` know."""
+        return None
+
+    def spans(self, a: Array, b: Array) -> tuple[npt.NDArray[np.int64], Array] | None:  # noqa: ARG002 - of other shapes
+        """Return where segments from ``a`` to ``b`` (m, 3) are in: (m + 1,) firsts of (n, 2) shares from 0 to 1.
+
+        None of shapes that the kernels of :mod:`.segment_kernels` know.
+        """
+        return None
+
+    def apart(self, points: Array) -> Array:
+        """Return ``(n,)`` mm: distances of finite points ``(n, 3)`` from the shape, 0 inside."""
+        raise NotImplementedError
+
+    def extents(self) -> tuple[Bounds, Bounds]:
+        """Return bounds of the shape and of its complement."""
+        raise NotImplementedError
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Shape):
+            return False if isinstance(other, Region) else NotImplemented
+        return self._key() == other._key() and self._data is other._data
+
+    def __hash__(self) -> int:
+        return hash((*self._key(), id(self._data)))
+
+    def _key(self) -> tuple[int, bytes, bytes]:
+        return self._kind, self._linear.tobytes(), self._centre.tobytes()
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(centre={self._centre.tolist()})"
+
+
+def pack_rows(region: Region) -> tuple[npt.NDArray[np.int32], Array]:
+    """Return ``ops`` and ``rows`` as if no shape had a field."""
+    rows = np.zeros((len(region.leaves), 20))
+    for row, leaf in zip(rows, region.leaves, strict=True):
+        row[0] = leaf.kind
+        row[1:10] = leaf.linear.ravel()
+        row[10:13] = leaf.centre
+        row[13] = largest_stretch(leaf.linear)
+        row[14:17] = np.linalg.norm(leaf.linear, axis=1) * (1.0 + 1e-12)
+        row[17] = -1.0
+    return np.array(region.program, np.int32), rows
+
+
+def largest_stretch(linear: Array) -> float:
+    """Return by how much a linear map stretches at most, its rounding included."""
+    return float(np.linalg.svd(linear, compute_uv=False)[0]) * (1.0 + 1e-12)
 
 
 def _depth(program: tuple[int, ...]) -> int:

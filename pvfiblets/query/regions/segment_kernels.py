@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
+from ...support.array_types import Bools, Float64s, Int32s, Int64s, UInt8s
 from ..density.voxel_walk_kernels import walk
 from .shape_kernels import unit
 from .surface_kernels import segment_crossings, winding_number
@@ -20,7 +20,7 @@ _NONE = (2.0, -1.0)
 
 
 @kernel
-def _at_least(a: float, b: float) -> Any:
+def _at_least(a: float, b: float) -> tuple[float, float]:
     """The share of [0, 1] where ``a + t (b - a) >= 0``."""
     if a >= 0.0 and b >= 0.0:
         return 0.0, 1.0
@@ -31,14 +31,14 @@ def _at_least(a: float, b: float) -> Any:
 
 
 @kernel
-def _within_one(span: Any, a: float, b: float) -> Any:
+def _within_one(span: tuple[float, float], a: float, b: float) -> tuple[float, float]:
     """The share of a span where ``|a + t (b - a)| <= 1``."""
     low, high = _at_least(1.0 + a, 1.0 + b), _at_least(1.0 - a, 1.0 - b)
     return max(span[0], low[0], high[0]), min(span[1], low[1], high[1])
 
 
 @kernel
-def _in_ball(p: Any, q: Any) -> Any:
+def _in_ball(p: tuple[float, float, float], q: tuple[float, float, float]) -> tuple[float, float]:
     """The share of [0, 1] where ``|p + t (q - p)| <= 1``."""
     near, far = p[0] * p[0] + p[1] * p[1] + p[2] * p[2], q[0] * q[0] + q[1] * q[1] + q[2] * q[2]
     if near <= 1.0 and far <= 1.0:
@@ -61,7 +61,7 @@ def _in_ball(p: Any, q: Any) -> Any:
 
 
 @kernel
-def _convex_span(row: Any, p: Any, q: Any) -> Any:
+def _convex_span(row: Float64s, p: tuple[float, float, float], q: tuple[float, float, float]) -> tuple[float, float]:
     """Return the span of a segment in a plane's half-space, slab, box or ball; closed, (2, -1) if nowhere."""
     a, b = unit(row, p[0], p[1], p[2]), unit(row, q[0], q[1], q[2])
     kind = row[0]
@@ -76,7 +76,7 @@ def _convex_span(row: Any, p: Any, q: Any) -> Any:
 
 
 @kernel
-def _holds(ops: Any, held: int) -> bool:
+def _holds(ops: Int32s, held: int) -> bool:
     """Whether an expression holds, from the bits of its leaves."""
     stack = 0  # of bits, the top in bit 0
     for word in ops:
@@ -92,9 +92,8 @@ def _holds(ops: Any, held: int) -> bool:
 
 
 @parallel_kernel
-def combine(
-    ops: Any, rows: Any, places: Any, first: Any, spans: Any, a: Any, b: Any, together: float, out: Any
-) -> None:  # fmt: skip
+def combine(ops: Int32s, rows: Float64s, places: Int64s, first: Int64s, spans: Float64s, a: Float64s, b: Float64s,
+            together: float, out: UInt8s) -> None:  # fmt: skip
     """Flag segments with a part in a region (1), and with a part outside (2): ``out`` (m,) uint8."""
     n_leaves = len(rows)
     for block in numba.prange((len(out) + _BLOCK - 1) // _BLOCK):
@@ -146,8 +145,8 @@ def combine(
 
 
 @kernel
-def _held(rows: Any, places: Any, first: Any, spans: Any, lows: Any, highs: Any, at: Any, k: int, begin: float,
-          end: float) -> int:  # fmt: skip
+def _held(rows: Float64s, places: Int64s, first: Int64s, spans: Float64s, lows: Float64s, highs: Float64s, at: Int64s,
+          k: int, begin: float, end: float) -> int:  # fmt: skip
     """Bits of the leaves that hold some place from ``begin`` to ``end``, which rise from call to call."""
     # A place on the face between two voxels is in the one that comes later: no place is in both, and none is in
     # neither.
@@ -168,7 +167,7 @@ def _held(rows: Any, places: Any, first: Any, spans: Any, lows: Any, highs: Any,
 
 
 @kernel
-def _put(spans: Any, n: int, open_: bool, writes: bool, begin: float, end: float) -> int:
+def _put(spans: Float64s, n: int, open_: bool, writes: bool, begin: float, end: float) -> int:
     """Add a part to the spans, or lengthen the last one if it is ``open_``; return how many there are then."""
     if not open_:
         if writes:
@@ -180,9 +179,8 @@ def _put(spans: Any, n: int, open_: bool, writes: bool, begin: float, end: float
 
 
 @parallel_kernel
-def label_spans(
-    mask: Any, linear: Any, centre: Any, a: Any, b: Any, first: Any, spans: Any, writes: bool
-) -> None:  # fmt: skip
+def label_spans(mask: Bools, linear: Float64s, centre: Float64s, a: Float64s, b: Float64s, first: Int64s,
+                spans: Float64s, writes: bool) -> None:  # fmt: skip
     """Shares of segments that lie in chosen voxels of ``mask`` (i, j, k), by `voxel_walk_kernels.walk`."""
     # Unless `writes`, only counted: `first[k + 1]` is the number of segment k. Otherwise written to `spans` from
     # `first[k]` on.
@@ -211,8 +209,9 @@ def label_spans(
 
 
 @parallel_kernel
-def surface_spans(mesh: Any, tree: Any, linear: Any, centre: Any, a: Any, b: Any, first: Any, spans: Any,
-                  writes: bool) -> None:  # fmt: skip
+def surface_spans(mesh: tuple[Float64s, Int64s, Int64s, Int64s, Float64s, Float64s, Float64s, int, int],
+                  tree: tuple[Float64s, Int64s, Int64s], linear: Float64s, centre: Float64s, a: Float64s, b: Float64s,
+                  first: Int64s, spans: Float64s, writes: bool) -> None:  # fmt: skip
     """Shares of segments that a closed mesh encloses; ``first``, ``spans`` and ``writes`` as in :func:`label_spans`."""
     # Between two triangles that it meets, a segment is where its middle is.
     points, triangles, cells, members, low, high, steps, nx, ny = mesh

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from .classify import pack_rows
+from .region import pack_rows
 
 if TYPE_CHECKING:
     from .region import Region

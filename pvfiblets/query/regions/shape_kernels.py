@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 
 from ...codec.jit import kernel, parallel_kernel
+from ...support.array_types import Bools, Float64s, Int32s, Int64s
 
 _PLANE, _SLAB, _BOX, _SPHERE = range(4)
 _AND, _OR, _NOT = -1, -2, -3
@@ -15,7 +15,7 @@ _BLOCK = 4096
 
 
 @kernel
-def unit(row: Any, x: float, y: float, z: float) -> Any:
+def unit(row: Float64s, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Unit coordinates of a position; the order of operations is that of :mod:`.shapes`."""
     x -= row[10]
     y -= row[11]
@@ -28,7 +28,7 @@ def unit(row: Any, x: float, y: float, z: float) -> Any:
 
 
 @kernel
-def _holds(row: Any, x: float, y: float, z: float) -> bool:
+def _holds(row: Float64s, x: float, y: float, z: float) -> bool:
     u, v, w = unit(row, x, y, z)
     kind = row[0]
     if kind == _PLANE:
@@ -41,7 +41,7 @@ def _holds(row: Any, x: float, y: float, z: float) -> bool:
 
 
 @parallel_kernel
-def evaluate(ops: Any, rows: Any, known: Any, places: Any, points: Any, out: Any) -> None:
+def evaluate(ops: Int32s, rows: Float64s, known: Bools, places: Int64s, points: Float64s, out: Bools) -> None:
     """Find the points that a region holds."""
     # `known` is (k, n) bool: known results of leaves, of leaf i in row `places[i]` if that is not -1 (surfaces,
     # labels); the other leaves are computed here. `points` is (n, 3) float64, `out` (n,) bool.

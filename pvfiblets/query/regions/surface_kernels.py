@@ -14,12 +14,12 @@ reach at once.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
+from ...support.array_types import Float64s, Int32s, Int64s
 
 _BLOCK = 1024
 _FEW = 4  # triangles of a leaf of the tree
@@ -27,7 +27,9 @@ _DEEPEST = 64
 
 
 @kernel
-def build_cells(points: Any, triangles: Any, low: Any, steps: Any, nx: int, ny: int) -> Any:
+def build_cells(
+    points: Float64s, triangles: Int64s, low: Float64s, steps: Float64s, nx: int, ny: int
+) -> tuple[Int64s, Int64s]:
     """Return first places ``(nx ny + 1,)`` and triangle numbers of the cells, int64; ``steps`` are cells per mm."""
     counts = np.zeros(nx * ny + 1, np.int64)
     members = np.empty(0, np.int64)
@@ -59,12 +61,12 @@ def _cell(value: float, low: float, step: float, n: int) -> int:
 
 
 @kernel
-def _cells(a: float, b: float, c: float, low: float, step: float, n: int) -> Any:
+def _cells(a: float, b: float, c: float, low: float, step: float, n: int) -> tuple[int, int]:
     return _cell(min(a, b, c), low, step, n), _cell(max(a, b, c), low, step, n)
 
 
 @kernel
-def _crossing(points: Any, a: int, b: int, x: float, y: float) -> int:
+def _crossing(points: Float64s, a: int, b: int, x: float, y: float) -> int:
     """Return +1 or -1 if the edge crosses the ray from (x, y) along +x upwards or downwards, 0 if it does not."""
     sign = 1
     if a > b:
@@ -80,8 +82,8 @@ def _crossing(points: Any, a: int, b: int, x: float, y: float) -> int:
 
 
 @kernel
-def winding_number(points: Any, triangles: Any, first: Any, members: Any, low: Any, high: Any, steps: Any, nx: int,
-                   ny: int, x: float, y: float, z: float) -> int:  # fmt: skip
+def winding_number(points: Float64s, triangles: Int64s, first: Int64s, members: Int64s, low: Float64s, high: Float64s,
+                   steps: Float64s, nx: int, ny: int, x: float, y: float, z: float) -> int:  # fmt: skip
     """Winding number of a mesh, by its cells of :func:`build_cells`, about a position."""
     if not (low[0] <= x <= high[0] and low[1] <= y <= high[1] and low[2] <= z <= high[2]):
         return 0
@@ -113,8 +115,9 @@ def winding_number(points: Any, triangles: Any, first: Any, members: Any, low: A
 
 
 @parallel_kernel
-def winding(points: Any, triangles: Any, first: Any, members: Any, low: Any, high: Any, steps: Any, nx: int, ny: int,
-            linear: Any, centre: Any, places: Any, out: Any) -> None:  # fmt: skip
+def winding(points: Float64s, triangles: Int64s, first: Int64s, members: Int64s, low: Float64s, high: Float64s,
+            steps: Float64s, nx: int, ny: int, linear: Float64s, centre: Float64s, places: Float64s,
+            out: Int32s) -> None:  # fmt: skip
     """Winding numbers, into ``out`` (n,) int32, about ``linear (places - centre)``."""
     n = len(places)
     for block in numba.prange((n + _BLOCK - 1) // _BLOCK):
@@ -127,7 +130,7 @@ def winding(points: Any, triangles: Any, first: Any, members: Any, low: Any, hig
 
 
 @kernel
-def build_tree(points: Any, triangles: Any) -> Any:
+def build_tree(points: Float64s, triangles: Int64s) -> tuple[Float64s, Int64s, Int64s]:
     """Return boxes (m, 6) float64, links (m, 2) int64 and the order of the triangles (n,) int64."""
     # A box's links are its two children, or, where the first is negative, `-1 - first` and the end of its triangles in
     # the order.
@@ -173,7 +176,7 @@ def build_tree(points: Any, triangles: Any) -> Any:
 
 
 @kernel
-def _box_square(boxes: Any, node: int, x: float, y: float, z: float) -> float:
+def _box_square(boxes: Float64s, node: int, x: float, y: float, z: float) -> float:
     dx = max(boxes[node, 0] - x, x - boxes[node, 3], 0.0)
     dy = max(boxes[node, 1] - y, y - boxes[node, 4], 0.0)
     dz = max(boxes[node, 2] - z, z - boxes[node, 5], 0.0)
@@ -181,7 +184,7 @@ def _box_square(boxes: Any, node: int, x: float, y: float, z: float) -> float:
 
 
 @kernel
-def _meets_box(boxes: Any, node: int, p: Any, q: Any) -> bool:
+def _meets_box(boxes: Float64s, node: int, p: Float64s, q: Float64s) -> bool:
     """Whether a segment meets a box, or comes as near to it as rounding could hide."""
     enter, leave = -1e-9, 1.0 + 1e-9
     for axis in range(3):
@@ -197,8 +200,8 @@ def _meets_box(boxes: Any, node: int, p: Any, q: Any) -> bool:
 
 
 @kernel
-def segment_crossings(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, p: Any, q: Any, stack: Any,
-                      ts: Any) -> Any:  # fmt: skip
+def segment_crossings(points: Float64s, triangles: Int64s, boxes: Float64s, links: Int64s, order: Int64s, p: Float64s,
+                      q: Float64s, stack: Int64s, ts: Float64s) -> tuple[int, Float64s]:  # fmt: skip
     """How many triangles a segment meets, and at which shares of it from 0 to 1: ``ts``, made longer where it must be.
 
     Triangles are taken a billionth larger than they are, so that none is missed on the edge of two; one met too often
@@ -253,7 +256,7 @@ def _edge_square(px: float, py: float, pz: float, ex: float, ey: float, ez: floa
 
 
 @kernel
-def _triangle_square(points: Any, a: int, b: int, c: int, x: float, y: float, z: float) -> float:
+def _triangle_square(points: Float64s, a: int, b: int, c: int, x: float, y: float, z: float) -> float:
     """Squared distance from a triangle: from its edges or, where the foot of the perpendicular is inside, its plane."""
     # Degenerate ones have no foot inside (the comparisons are strict) and are their edges.
     ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
@@ -272,8 +275,9 @@ def _triangle_square(points: Any, a: int, b: int, c: int, x: float, y: float, z:
 
 
 @kernel
-def nearest(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, guess: int, share: float, stack: Any,
-            reach: Any, x: float, y: float, z: float) -> Any:  # fmt: skip
+def nearest(points: Float64s, triangles: Int64s, boxes: Float64s, links: Int64s, order: Int64s, guess: int,
+            share: float, stack: Int64s, reach: Float64s, x: float, y: float,
+            z: float) -> tuple[float, int]:  # fmt: skip
     """Squared distance and nearest triangle; ``guess`` is looked at first. ``stack``, ``reach``: (64,) for scratch."""
     # With a `share` below 1 no triangle is nearer than that share of the square that is found.
     found = guess
@@ -306,7 +310,9 @@ def nearest(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, gue
 
 
 @parallel_kernel
-def distances(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, places: Any, out: Any) -> None:
+def distances(
+    points: Float64s, triangles: Int64s, boxes: Float64s, links: Int64s, order: Int64s, places: Float64s, out: Float64s
+) -> None:
     """Distances of ``places`` (n, 3) from the nearest triangle, into ``out`` (n,)."""
     n = len(places)
     for block in numba.prange((n + _BLOCK - 1) // _BLOCK):
@@ -319,9 +325,9 @@ def distances(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, p
 
 
 @parallel_kernel
-def nodes_of_grid(points: Any, triangles: Any, first: Any, members: Any, low: Any, high: Any, steps: Any, nx: int,
-                  ny: int, boxes: Any, links: Any, order: Any, share: float, origin: Any, step: float,
-                  out: Any) -> None:  # fmt: skip
+def nodes_of_grid(points: Float64s, triangles: Int64s, first: Int64s, members: Int64s, low: Float64s, high: Float64s,
+                  steps: Float64s, nx: int, ny: int, boxes: Float64s, links: Int64s, order: Int64s, share: float,
+                  origin: Float64s, step: float, out: Float64s) -> None:  # fmt: skip
     """Signed distances at grid points into ``out`` (nz, ny, nx) float64: positive where the winding number is not 0."""
     # They are lower bounds, of at least the root of `share` of the distance.
     size_z, size_y, size_x = out.shape

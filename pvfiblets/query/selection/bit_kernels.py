@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
 from ...codec.jit import parallel_kernel
+from ...support.array_types import Bools, Float64s, Integers, UInt32s
 
 
 @parallel_kernel
-def keep_values(values: Any, lo: float, hi: float, keep_nan: bool, words: Any) -> None:
+def keep_values(values: Float64s, lo: float, hi: float, keep_nan: bool, words: UInt32s) -> None:
     """Clear the bits of points whose value is not within ``lo`` to ``hi``."""
     # `values` is `(n,)` float32, `words` `((n + 31) // 32,)` uint32, changed in place.
     for w in numba.prange(len(words)):
@@ -25,7 +25,7 @@ def keep_values(values: Any, lo: float, hi: float, keep_nan: bool, words: Any) -
 
 
 @parallel_kernel
-def keep_codes(codes: Any, kept: Any, words: Any) -> None:
+def keep_codes(codes: Integers, kept: Bools, words: UInt32s) -> None:
     """Clear the bits of points whose code is not kept."""
     # `codes` is `(n,)` uint8 or uint16, `kept` `(256 or 65536,)` bool, `words` as in `keep_values`.
     for w in numba.prange(len(words)):

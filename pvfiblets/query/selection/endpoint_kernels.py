@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
+from ...support.array_types import Bools, Float64s, Int64s
 
 BLOCK = 256  # streamlines a thread looks at in one go
 
 
 @parallel_kernel
-def find_similar(
-    ends: Any, pairs: Any, keys: Any, starts: Any, low: Any, edge: float, distance: float, found: Any
-) -> None:
+def find_similar(ends: Float64s, pairs: Float64s, keys: Int64s, starts: Int64s, low: Float64s, edge: float,
+                 distance: float, found: Bools) -> None:  # fmt: skip
     """Return the streamlines with both ends near the ends of a pair."""
     squares = distance * distance
     for block in numba.prange((len(found) + BLOCK - 1) // BLOCK):
@@ -45,7 +44,7 @@ def find_similar(
 
 
 @kernel
-def _apart(ends: Any, s: int, end: int, pairs: Any, i: int) -> float:
+def _apart(ends: Float64s, s: int, end: int, pairs: Float64s, i: int) -> float:
     dx = ends[s, end, 0] - pairs[i, end, 0]
     dy = ends[s, end, 1] - pairs[i, end, 1]
     dz = ends[s, end, 2] - pairs[i, end, 2]

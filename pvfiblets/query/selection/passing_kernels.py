@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
-from ...codec.kernels.capsule_kernels import end_part
+from ...codec.kernels.capsule_kernels import anchor_part, end_part
+from ...support.array_types import Bools, Float32s, Float64s, Int8s, Int32s, Int64s, UInt8s, UInt16s, UInt32s
 from ..regions.classify import classify_ball
 from .point_flags import ALL, ANY, FIRST, LAST
 
@@ -17,31 +17,23 @@ RUN = 8  # consecutive segments that are settled together
 
 
 @parallel_kernel
-def balls(
-    anchors: Any, low: Any, fine: Any, ends: Any, reach: Any, origin: Any, scale: Any, units: Any, out: Any, radii: Any
-) -> None:
+def balls(anchors: UInt32s, low: UInt16s, fine: bool, ends: UInt32s, reach: UInt16s, origin: Float64s, scale: Float64s,
+          units: tuple[float, float, float], out: Float64s, radii: Float64s) -> None:  # fmt: skip
     """Balls about the capsules of consecutive fiblets, and what joins each to the next (:mod:`..capsules`)."""
     reach_scale, end_scale, slack = units
     for f in numba.prange(len(reach)):
         last = anchors[f, 1] >> 31
         chord = 0.0
         for axis in range(3):
-            q = _coordinate(anchors, low, fine, f, axis)
+            q = anchor_part(anchors, low, fine, f, axis)
             a = scale[axis] * q
             if last:
                 b = a + end_scale * end_part(np.int64(ends[f]), axis)
             else:
-                b = scale[axis] * _coordinate(anchors, low, fine, f + 1, axis)
+                b = scale[axis] * anchor_part(anchors, low, fine, f + 1, axis)
             out[f, axis] = 0.5 * (a + b) + origin[axis]
             chord += (b - a) * (b - a)
         radii[f] = 0.5 * math.sqrt(chord) + reach_scale * reach[f] + slack
-
-
-@kernel
-def _coordinate(anchors: Any, low: Any, fine: Any, f: int, axis: int) -> float:
-    word = anchors[f, axis // 2]
-    q = float((word >> 16) & 0xFFFF) if axis == 1 else float(word & 0xFFFF)
-    return q * 65536.0 + float(low[f, axis]) if fine else q
 
 
 @kernel
@@ -58,7 +50,9 @@ def _flags_of_fiblet(state: int, begin: int, end: int, flags: int) -> int:
 
 
 @parallel_kernel
-def settle(states: Any, anchors: Any, ranks: Any, wanted: Any, bits: int, flags: Any, open_: Any) -> None:
+def settle(
+    states: Int8s, anchors: UInt32s, ranks: Int64s, wanted: Bools, bits: int, flags: UInt8s, open_: Bools
+) -> None:
     """Take in the fiblets that lie surely in or out, and mark the others where they can still tell something."""
     n = len(states)
     parts = 64
@@ -86,7 +80,7 @@ def settle(states: Any, anchors: Any, ranks: Any, wanted: Any, bits: int, flags:
 
 
 @parallel_kernel
-def reduce_fiblets(inside: Any, starts: Any, found: Any) -> None:
+def reduce_fiblets(inside: Bools, starts: Int64s, found: UInt8s) -> None:
     """Flags of each fiblet by itself, from its points' flags."""
     # `inside` is `(n_points,)` bool, `starts` `(n + 1,)` int64, `found` `(n,)` uint8, filled.
     for f in numba.prange(len(found)):
@@ -107,7 +101,7 @@ def reduce_fiblets(inside: Any, starts: Any, found: Any) -> None:
 
 
 @kernel
-def merge(found: Any, which: Any, anchors: Any, ranks: Any, flags: Any) -> None:
+def merge(found: UInt8s, which: Int64s, anchors: UInt32s, ranks: Int64s, flags: UInt8s) -> None:
     """Take in fiblets whose points were looked at."""
     # `found` is `(m,)` uint8 of `reduce_fiblets`, `which` `(m,)` their rows in `anchors` and `ranks`; the rest is as in
     # `settle`.
@@ -125,7 +119,7 @@ def merge(found: Any, which: Any, anchors: Any, ranks: Any, flags: Any) -> None:
 
 
 @kernel
-def _ball_side(points: Any, first: int, last: int, packed: Any) -> int:
+def _ball_side(points: Float64s, first: int, last: int, packed: tuple[Int32s, Float64s, Float64s, Float32s]) -> int:
     """Side of the ball that holds points ``first`` to ``last``, about the middle of their chord."""
     x = 0.5 * points[first, 0] + 0.5 * points[last, 0]
     y = 0.5 * points[first, 1] + 0.5 * points[last, 1]
@@ -139,7 +133,9 @@ def _ball_side(points: Any, first: int, last: int, packed: Any) -> int:
 
 
 @parallel_kernel
-def run_sides(points: Any, starts: Any, packed: Any, sides: Any) -> None:
+def run_sides(
+    points: Float64s, starts: Int64s, packed: tuple[Int32s, Float64s, Float64s, Float32s], sides: Int8s
+) -> None:
     """Sides of runs of :data:`RUN` segments of fiblets, each by a ball about it: ``sides`` (n_points,) int8."""
     # Fiblet f has the points `starts[f]` to `starts[f + 1]`. The side of a run is given to the first points of its
     # segments, that of a fiblet's last run to its last point too. `packed` is the region (`classify.Packed`).
@@ -154,7 +150,8 @@ def run_sides(points: Any, starts: Any, packed: Any, sides: Any) -> None:
 
 
 @parallel_kernel
-def open_segments(points: Any, starts: Any, sides: Any, asked: Any, packed: Any, open_: Any) -> None:
+def open_segments(points: Float64s, starts: Int64s, sides: Int8s, asked: Bools,
+                  packed: tuple[Int32s, Float64s, Float64s, Float32s], open_: Bools) -> None:  # fmt: skip
     """Mark the segments of fiblets ``asked`` (n,) bool that balls leave undecided: ``open_`` (n_points,) bool."""
     # The other arguments are as in `run_sides`.
     for f in numba.prange(len(asked)):
@@ -165,7 +162,7 @@ def open_segments(points: Any, starts: Any, sides: Any, asked: Any, packed: Any,
 
 
 @kernel
-def _alike(mask: Any, ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> bool:
+def _alike(mask: Bools, ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> bool:
     """Whether all voxels of the box between two of them are chosen, or none is; outside of the grid none is."""
     ni, nj, nk = mask.shape
     count = total = 0
@@ -179,7 +176,9 @@ def _alike(mask: Any, ax: float, ay: float, az: float, bx: float, by: float, bz:
 
 
 @parallel_kernel
-def label_points(points: Any, starts: Any, mask: Any, linear: Any, centre: Any, inside: Any, open_: Any) -> None:
+def label_points(
+    points: Float64s, starts: Int64s, mask: Bools, linear: Float64s, centre: Float64s, inside: Bools, open_: Bools
+) -> None:
     """Flag fiblets' points in chosen voxels, and mark the segments to test: both (n_points,) bool."""
     # The voxels of `mask` (i, j, k) are the nearest to `linear (points - centre)`. A segment needs no test if it
     # crosses one face of voxels at most, and so lies in the voxels of its ends, or if all voxels about it are alike.
@@ -207,7 +206,7 @@ def label_points(points: Any, starts: Any, mask: Any, linear: Any, centre: Any, 
 
 
 @kernel
-def merge_segments(found: Any, rows: Any, ranks: Any, flags: Any) -> None:
+def merge_segments(found: UInt8s, rows: Int64s, ranks: Int64s, flags: UInt8s) -> None:
     """Take in segments of fiblets ``rows``: ``found`` (m,) is 1 where some of it is in, plus 2 where some is not."""
     for m in range(len(found)):
         rank = ranks[rows[m]]

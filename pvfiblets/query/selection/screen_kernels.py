@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
 from ...codec.jit import kernel, parallel_kernel
-from ...codec.kernels.capsule_kernels import end_part
+from ...codec.kernels.capsule_kernels import anchor_part, end_part
 from ...codec.layout import PAGE_BITS
+from ...support.array_types import Bools, Float64s, Int64s, UInt16s, UInt32s
 
 _RANK_MASK, _BEGIN, _END = (1 << 14) - 1, 30, 31
 
 
 @kernel
-def _inside(polygon: Any, x: float, y: float) -> bool:
+def _inside(polygon: Float64s, x: float, y: float) -> bool:
     """Whether a point lies in a polygon by the even-odd rule."""
     found = False
     j = len(polygon) - 1
@@ -29,7 +29,7 @@ def _inside(polygon: Any, x: float, y: float) -> bool:
 
 
 @kernel
-def _along(ax: float, ay: float, bx: float, by: float, x: float, y: float) -> Any:
+def _along(ax: float, ay: float, bx: float, by: float, x: float, y: float) -> tuple[float, float]:
     """Return the place on a segment nearest to another, from 0 to 1, and the square of the distance."""
     dx, dy = bx - ax, by - ay
     squares = dx * dx + dy * dy
@@ -39,7 +39,7 @@ def _along(ax: float, ay: float, bx: float, by: float, x: float, y: float) -> An
 
 
 @kernel
-def _distance(polygon: Any, x: float, y: float) -> float:
+def _distance(polygon: Float64s, x: float, y: float) -> float:
     """Distance of a point from the area of a polygon; 0 inside."""
     if _inside(polygon, x, y):
         return 0.0
@@ -53,7 +53,7 @@ def _distance(polygon: Any, x: float, y: float) -> float:
 
 
 @parallel_kernel
-def distances(polygon: Any, points: Any) -> Any:
+def distances(polygon: Float64s, points: Float64s) -> Float64s:
     """``(n,)`` distances of points ``(n, 2)`` from the area of a polygon ``(k, 2)``, 0 inside."""
     found = np.empty(len(points))
     for i in numba.prange(len(points)):
@@ -62,7 +62,9 @@ def distances(polygon: Any, points: Any) -> Any:
 
 
 @kernel
-def _touching(polygon: Any, tolerance: float, x0: float, y0: float, x1: float, y1: float) -> Any:
+def _touching(
+    polygon: Float64s, tolerance: float, x0: float, y0: float, x1: float, y1: float
+) -> tuple[bool, float, float]:
     """Whether a segment comes within ``tolerance`` of a polygon's area, and the ends of the part that does."""
     # Of two segments that do not cross, an end of one is nearest to the other: it suffices to look at crossings, at the
     # segment's ends, and at the polygon's corners. Between the first and the last of those places the segment may leave
@@ -93,14 +95,14 @@ def _touching(polygon: Any, tolerance: float, x0: float, y0: float, x1: float, y
 
 
 @kernel
-def _project(matrix: Any, points: Any, i: int, clip: Any) -> None:
+def _project(matrix: Float64s, points: Float64s, i: int, clip: Float64s) -> None:
     x, y, z = points[i, 0], points[i, 1], points[i, 2]
     for row in range(4):
         clip[row] = matrix[row, 0] * x + matrix[row, 1] * y + matrix[row, 2] * z + matrix[row, 3]
 
 
 @kernel
-def _part_inside(points: Any, i: int, j: int, planes: Any) -> Any:
+def _part_inside(points: Float64s, i: int, j: int, planes: Float64s) -> tuple[float, float]:
     """Part of the segment from point ``i`` to ``j`` on the kept side of all planes: ``(t0, t1)``, t0 > t1 if none."""
     t0, t1 = 0.0, 1.0
     for k in range(len(planes)):
@@ -119,8 +121,8 @@ def _part_inside(points: Any, i: int, j: int, planes: Any) -> Any:
 
 
 @kernel
-def _segment(points: Any, i: int, j: int, matrix: Any, planes: Any, size: Any, polygon: Any, tolerance: float,
-             work: Any) -> Any:  # fmt: skip
+def _segment(points: Float64s, i: int, j: int, matrix: Float64s, planes: Float64s, size: Float64s, polygon: Float64s,
+             tolerance: float, work: Float64s) -> tuple[bool, float, float, float, float]:  # fmt: skip
     """Whether a segment is hit; where the first and the last place lie (0 to 1); their depths (-1 to 1)."""
     t0, t1 = _part_inside(points, i, j, planes)
     if t0 > t1:
@@ -144,12 +146,14 @@ def _segment(points: Any, i: int, j: int, matrix: Any, planes: Any, size: Any, p
 
 
 @kernel
-def _set(words: Any, i: int) -> bool:
+def _set(words: UInt32s, i: int) -> bool:
     return len(words) == 0 or bool((words[i >> 5] >> np.uint32(i & 31)) & np.uint32(1))
 
 
 @parallel_kernel
-def candidates(first: int, count: int, arrays: Any, grid: Any, spaces: Any, ranks: Any, found: Any, balls: Any) -> int:
+def candidates(first: int, count: int, arrays: tuple[UInt32s, UInt16s, UInt16s, UInt32s, Int64s],
+               grid: tuple[Float64s, Float64s, bool, float, float, float], spaces: Float64s, ranks: Bools, found: Bools,
+               balls: Float64s) -> int:  # fmt: skip
     """Capsules of consecutive fiblets that reach into all half spaces; returns how many."""
     anchors, low, reach, ends, rank_base = arrays
     origin, scale, fine, reach_scale, end_scale, slack = grid
@@ -167,9 +171,9 @@ def candidates(first: int, count: int, arrays: Any, grid: Any, spaces: Any, rank
         for k in range(len(spaces)):
             at, to = spaces[k, 3], spaces[k, 3]
             for axis in range(3):
-                a = _anchor(anchors, low, fine, f, axis) * scale[axis] + origin[axis]
+                a = anchor_part(anchors, low, fine, f, axis) * scale[axis] + origin[axis]
                 if not ends_here:
-                    b = _anchor(anchors, low, fine, f + 1, axis) * scale[axis] + origin[axis]
+                    b = anchor_part(anchors, low, fine, f + 1, axis) * scale[axis] + origin[axis]
                 else:
                     b = a + end_scale * (end_part(np.int64(ends[rank]), axis) if rank < len(ends) else 0)
                 at += spaces[k, axis] * a
@@ -181,9 +185,9 @@ def candidates(first: int, count: int, arrays: Any, grid: Any, spaces: Any, rank
             continue
         chord = 0.0
         for axis in range(3):
-            a = _anchor(anchors, low, fine, f, axis) * scale[axis] + origin[axis]
+            a = anchor_part(anchors, low, fine, f, axis) * scale[axis] + origin[axis]
             if not ends_here:
-                b = _anchor(anchors, low, fine, f + 1, axis) * scale[axis] + origin[axis]
+                b = anchor_part(anchors, low, fine, f + 1, axis) * scale[axis] + origin[axis]
             else:
                 b = a + end_scale * (end_part(np.int64(ends[rank]), axis) if rank < len(ends) else 0)
             balls[m, axis] = 0.5 * (a + b)
@@ -195,14 +199,9 @@ def candidates(first: int, count: int, arrays: Any, grid: Any, spaces: Any, rank
 
 
 @kernel
-def _anchor(anchors: Any, low: Any, fine: bool, f: int, axis: int) -> float:
-    """One component of an anchor in units of the grid."""
-    q = float((anchors[f, axis >> 1] >> np.uint32(16 * (axis & 1))) & np.uint32(0xFFFF))
-    return q * 65536.0 + float(low[f, axis]) if fine else q
-
-
-@kernel
-def _nearest(points: Any, start: int, count: int, first_point: int, screen: Any, words: Any) -> Any:
+def _nearest(points: Float64s, start: int, count: int, first_point: int,
+             screen: tuple[Float64s, Float64s, Float64s, Float64s, float],
+             words: UInt32s) -> tuple[float, float]:  # fmt: skip
     """Depth and place of one fiblet; see :func:`hits`."""
     matrix, planes, size, polygon, tolerance = screen
     work = np.empty((4, 4))
@@ -219,16 +218,18 @@ def _nearest(points: Any, start: int, count: int, first_point: int, screen: Any,
 
 
 @parallel_kernel
-def hits(
-    points: Any, starts: Any, counts: Any, first_point: Any, screen: Any, words: Any, depths: Any, places: Any
-) -> None:
+def hits(points: Float64s, starts: Int64s, counts: Int64s, first_point: Int64s,
+         screen: tuple[Float64s, Float64s, Float64s, Float64s, float], words: UInt32s, depths: Float64s,
+         places: Float64s) -> None:  # fmt: skip
     """Nearest place of each fiblet that lies under the area."""
     for m in numba.prange(len(starts)):
         depths[m], places[m] = _nearest(points, starts[m], counts[m], first_point[m], screen, words)
 
 
 @parallel_kernel
-def spans(points: Any, starts: Any, counts: Any, first_point: Any, screen: Any, words: Any, out: Any) -> None:
+def spans(points: Float64s, starts: Int64s, counts: Int64s, first_point: Int64s,
+          screen: tuple[Float64s, Float64s, Float64s, Float64s, float], words: UInt32s,
+          out: Float64s) -> None:  # fmt: skip
     """The same for every segment: ``out (n, 2)``, the part of the segment from each point that lies under the area."""
     # NaN where there is none; parameters as for `hits`.
     for m in numba.prange(len(starts)):
@@ -236,7 +237,9 @@ def spans(points: Any, starts: Any, counts: Any, first_point: Any, screen: Any, 
 
 
 @kernel
-def _parts(points: Any, start: int, count: int, first_point: int, screen: Any, words: Any, out: Any) -> None:
+def _parts(points: Float64s, start: int, count: int, first_point: int,
+           screen: tuple[Float64s, Float64s, Float64s, Float64s, float], words: UInt32s,
+           out: Float64s) -> None:  # fmt: skip
     """Parts of one fiblet's segments; see :func:`spans`."""
     matrix, planes, size, polygon, tolerance = screen
     work = np.empty((4, 4))

@@ -66,7 +66,7 @@ def typed_value(shape: Mapping[str, Any], bounds: Sequence[float], name: str, en
     found = next((one for one in controls(shape, bounds) if one["name"] == name), None)
     if found is None:
         raise ValueError(f"a {shape['kind']} has no {str(name)[:40]!r}")
-    value = typed(text, found["label"], optional=False)
+    value = typed(text, found["label"])
     if found["type"] != "range":
         return value
     ends = list(found["value"])

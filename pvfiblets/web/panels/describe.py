@@ -103,15 +103,22 @@ class Charts:
         return self._kept[key]
 
 
-def typed(text: str, name: str, *, optional: bool) -> float | None:
+def typed(text: str, name: str) -> float:
     """Return a number that somebody typed; a comma may stand for the point."""
-    text = str(text).strip().replace(",", ".").removesuffix("mm").strip()
-    if not text and optional:
-        return None
+    given = _number_text(text)
     try:
-        value = float(text)
+        value = float(given)
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise ValueError(f"{name}: {text[:40]!r} is not a number")
+        raise ValueError(f"{name}: {given[:40]!r} is not a number")
     return value
+
+
+def typed_or_none(text: str, name: str) -> float | None:
+    """Return a number that somebody typed, or None where nothing is."""
+    return typed(text, name) if _number_text(text) else None
+
+
+def _number_text(text: str) -> str:
+    return str(text).strip().replace(",", ".").removesuffix("mm").strip()

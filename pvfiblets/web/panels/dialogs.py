@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.elements import html, v3
 from pvfiblets.web.server.access import LARGEST_SESSION
+
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
 
 KEYS = (
     ("1 2 3 4", "axial, coronal, sagittal, oblique"),
@@ -43,7 +46,7 @@ SAVE = (  # of a session that is too large the page gets only an error
 LABEL = "cursor: pointer; background: rgba(128,128,128,.2)"  # of files to choose: labels that look like buttons
 
 
-def build(app: Any) -> None:
+def build(app: Explorer) -> None:
     """Build all of them."""
     # Outside of the dialogs: an input in a dialog that another user has closed would receive no file.
     html.Input(type="file", hidden=True, id="pv-upload", multiple=True, data_upload=True, data_limit=("upload_limit",))
@@ -95,7 +98,7 @@ LISTED = (
 )
 
 
-def _files(app: Any) -> None:
+def _files(app: Explorer) -> None:
     with _dialog("open", "Open a file", 620):
         with html.Div(classes="px-4 pb-1 pv-pair"):
             with v3.VBtn(
@@ -151,7 +154,7 @@ def _files(app: Any) -> None:
                     data_action="open-marked")  # fmt: skip
 
 
-def _sessions(app: Any) -> None:
+def _sessions(app: Explorer) -> None:
     with _dialog("session", "Session", 460):
         with v3.VCardText():
             html.Div("A session file stores layers, camera, cuts, filters and selections, but no data.",
@@ -171,7 +174,7 @@ def _sessions(app: Any) -> None:
                 v3.VBtn("Save there", type="submit", variant="tonal", classes="text-none", data_action="store-session")
 
 
-def _picture(app: Any) -> None:
+def _picture(app: Explorer) -> None:
     with _dialog("picture", "Save the picture", 420), v3.VCardText(classes="px-1 pt-0"):
         with ui.labelled("Times the view"):
             with html.Div(classes="pv-pair", style="flex-wrap: wrap"):
@@ -219,7 +222,7 @@ def _help() -> None:
                         html.Td(meaning)
 
 
-def _rename(app: Any) -> None:
+def _rename(app: Explorer) -> None:
     with _dialog("rename", "Rename", 400), v3.VCardText():
         html.Input(
             id="rename", value=("chosen_name",), classes="pv-num", style="width: 100%; font-size: 15px; padding: 8px",
@@ -235,7 +238,7 @@ def _end() -> None:
             v3.VBtn("Close", type="submit", color="primary", classes="text-none", data_action="end-session")
 
 
-def _progress(app: Any) -> None:
+def _progress(app: Explorer) -> None:
     with v3.VCard(
         v_if="job.text", elevation=8, width=340, id="busy", classes="pv-progress",
     ):  # fmt: skip

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.elements import eye, fold, html, v3
+
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
 
 EXPERT = "Drawing"
 ICONS = {
@@ -18,7 +21,7 @@ ICONS = {
 }
 
 
-def layers(app: Any) -> None:
+def layers(app: Explorer) -> None:
     """Build the list of layers."""
     html.Div("Layers", classes="pv-head")
     with html.Div(classes="pv-scroll", style="flex: 0 0 auto; max-height: 34%", id="layers"):
@@ -73,7 +76,7 @@ def layers(app: Any) -> None:
     v3.VDivider()
 
 
-def properties(app: Any) -> None:
+def properties(app: Explorer) -> None:
     """Build the panel of properties: one control for each type, repeated over what the server describes."""
     html.Div(
         "{{ chosen_name || 'Properties' }}", classes="pv-name text-truncate", title=("chosen_name",), style="flex: none"
@@ -94,7 +97,7 @@ def properties(app: Any) -> None:
                         _controls(app)
 
 
-def _controls(app: Any) -> None:
+def _controls(app: Explorer) -> None:
     def change(value: str) -> tuple[Any, str]:
         return app.set_property, f"[chosen, p.name, {value}]"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import client, rca
@@ -14,6 +14,9 @@ from pvfiblets.web.panels import layers as panels
 from pvfiblets.web.panels.elements import html, v3
 from pvfiblets.web.panels.tabs import atlas_tab, painting_tab, slices_tab, tabs
 from pvfiblets.web.panels.tabs.painting_tab import PAINTING
+
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
 
 VIEW = "view"
 VIEWS = (
@@ -206,7 +209,7 @@ MARKS = """
 """
 
 
-def build(app: Any) -> Any:
+def build(app: Explorer) -> Any:
     """Build the page of an application, and return its layout."""
     with VAppLayout(app.server, theme=("dark ? 'dark' : 'light'",)) as layout:
         client.Style(STYLE)
@@ -234,7 +237,7 @@ def build(app: Any) -> Any:
     return layout
 
 
-def _rail(side: str, least: int, label: str, icons: Callable[[Any], None], app: Any) -> None:
+def _rail(side: str, least: int, label: str, icons: Callable[[Any], None], app: Explorer) -> None:
     """Build the icons that a folded panel leaves behind where a page is not too narrow for them."""
     with v3.VNavigationDrawer(
         v_if=f"!{side}_open && $vuetify.display.width >= {least}", permanent=True, width=48, location=side,
@@ -244,7 +247,7 @@ def _rail(side: str, least: int, label: str, icons: Callable[[Any], None], app: 
             icons(app)
 
 
-def _layer_icons(app: Any) -> None:
+def _layer_icons(app: Explorer) -> None:
     with v3.VBtn(
         v_for="layer in layers", key="layer.id", icon=True, size="small", variant="text", aria_label=("layer.name",),
         click=(app.choose, "[layer.id]"), color=("layer.id === chosen ? 'primary' : undefined",),
@@ -266,7 +269,7 @@ def _tab_icons(_: Any) -> None:
 SAVE = "utils.download('picture.png', trigger('picture'), 'image/png')"
 
 
-def _bar(app: Any) -> None:
+def _bar(app: Explorer) -> None:
     with v3.VAppBar(density="compact", height=44, flat=True, border="b"):
         _icon("mdi-dock-left", "Layers and properties ([)", click="left_open = !left_open")
         with html.Div(classes="pv-bar"):
@@ -283,7 +286,7 @@ def _bar(app: Any) -> None:
         _icon("mdi-dock-right", "Clip, filter, selection, information (])", click="right_open = !right_open")
 
 
-def _wide(app: Any) -> None:
+def _wide(app: Explorer) -> None:
     """Build what a narrow page folds into a menu."""
     v3.VDivider(vertical=True, classes="mx-1")
     for name, title, hint in VIEWS:
@@ -313,7 +316,7 @@ def _wide(app: Any) -> None:
     _icon("mdi-close-circle-outline", "Close this session", click="dialog = 'end'", name="end", v_if="!shared")
 
 
-def _folded(app: Any) -> None:
+def _folded(app: Explorer) -> None:
     """Build the same as a menu, which a narrow page shows."""
     items: list[tuple[str, str, Any]] = [
         *((f"{title} view", f"view-{name}", (app.camera.view, f"['{name}']")) for name, title, _ in VIEWS),
@@ -358,7 +361,7 @@ def _icon(icon: str, hint: str, *, name: str | None = None, **rest: Any) -> None
         ui.tooltip(hint, label=label)
 
 
-def _view(app: Any) -> None:
+def _view(app: Explorer) -> None:
     # A bright background needs dark letters, whatever the theme of the panels is.
     bright = "[1, 3, 5].reduce((sum, k) => sum + parseInt(background.slice(k, k + 2), 16), 0) > 382"
     with html.Div(

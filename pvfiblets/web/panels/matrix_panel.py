@@ -27,6 +27,7 @@ from pvfiblets.web.values import number
 
 if TYPE_CHECKING:
     from pvfiblets.query.connectome.matrix import Connectome
+    from pvfiblets.web.app import Explorer
 
 __all__ = ["MatrixActions", "build", "matrix_image"]
 
@@ -36,7 +37,7 @@ LISTED = 200  # files that may be labels, or their names
 class MatrixActions(LineActions):
     """The page's actions on the matrix of the chosen tractogram."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._open = False
         self._settings = True
@@ -161,7 +162,7 @@ class MatrixActions(LineActions):
         if name not in ("labels", "names", "weights", "contrast", "statistic", "radius"):
             raise ValueError(f"a matrix has no {str(name)[:40]!r}")
         if name == "radius":
-            typed(str(value), "radius", optional=False)
+            typed(str(value), "radius")
         self._form[name] = value
         if name == "labels" and isinstance(value, str):
             self._form["names"] = self._names_of(value)
@@ -187,7 +188,7 @@ class MatrixActions(LineActions):
 
     def set_threshold(self, given: str) -> None:
         """Leave weaker connections out."""
-        threshold = number(typed(given, "threshold", optional=False), "threshold", 0.0)
+        threshold = number(typed(given, "threshold"), "threshold", 0.0)
         self._app.scene.matrix.change("threshold of the matrix", threshold=threshold)
 
     def pick(self, x: float, y: float) -> bool:
@@ -208,7 +209,7 @@ class MatrixActions(LineActions):
             raise ValueError("choose a volume of labels first, such as an atlas or a parcellation")
         wanted: dict[str, Any] = {name: chosen[name] or None for name in ("names", "weights", "statistic")}
         wanted |= {"layer": self._layer.id, "labels": chosen["labels"], "contrast": chosen["contrast"]}
-        wanted["radius"] = typed(str(chosen["radius"]), "radius", optional=False)
+        wanted["radius"] = typed(str(chosen["radius"]), "radius")
         before, scene = self._app.scene.state.matrix, self._app.scene
         if before is not None:  # a threshold of other numbers means nothing
             wanted |= {"graph": before.graph, "log": before.log}
@@ -311,7 +312,7 @@ def matrix_image(matrix: np.ndarray, logarithmic: bool, ends: tuple[float, float
 # The page -------------------------------------------------------------------------------------------
 
 
-def build(app: Any) -> None:
+def build(app: Explorer) -> None:
     """Build the panel; client/matrix.js tells cells and takes clicks on them."""
     matrix = app.matrix
     with html.Div(v_if="matrix.open", classes=("['pv-matrix', matrix_alone ? 'pv-alone' : '']",), id="pv-matrix"):

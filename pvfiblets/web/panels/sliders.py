@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.panels.charts import short
+
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
 
 FILTERS = ("region", "handle", "criterion", "share")
 SETTLED = 3.0  # seconds without a word from the slider after which the page is brought in step
@@ -20,7 +23,7 @@ SETTLED = 3.0  # seconds without a word from the slider after which the page is 
 class SlideActions(Actions):
     """The sliders of an application."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self.moving = False
         self._timer: asyncio.TimerHandle | None = None

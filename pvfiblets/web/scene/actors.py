@@ -16,6 +16,10 @@ from pvfiblets.web.session.document import LINES, Clip, Filters, Ids, Layer, Sou
 from pvfiblets.web.session.shapes import make_predicate, make_region, planes_of
 
 if TYPE_CHECKING:
+    import pyvista as pv
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.web.scene.files.loading import Loaded
     from pvfiblets.web.session.shapes import Load
 
@@ -40,7 +44,9 @@ MOST_PLANES = 6  # most planes that VTK cuts a mesh or tubes by
 _CONDITION, _CONNECTION = "regions", "connection"
 
 
-def add_actor(plotter: Any, layer: Layer, loaded: Loaded, colours: Colours, cluster: str | None = None) -> Any:
+def add_actor(
+    plotter: pv.BasePlotter, layer: Layer, loaded: Loaded, colours: Colours, cluster: str | None = None
+) -> Any:
     """Add what a layer draws, with its settings; filters, cuts and selection are not applied yet."""
     common = {"name": layer.id, "show_scalar_bar": False, "reset_camera": False, "render": False}
     wanted = looks(layer.kind, layer.settings)
@@ -61,12 +67,12 @@ def add_actor(plotter: Any, layer: Layer, loaded: Loaded, colours: Colours, clus
     return actor
 
 
-def remove_actor(plotter: Any, actor: Any) -> None:
+def remove_actor(plotter: pv.BasePlotter, actor: Any) -> None:
     """Take an actor away; its GPU memory goes with it."""
     plotter.remove_actor(actor, reset_camera=False, render=False)
 
 
-def put_in_order(renderer: Any, actors: Sequence[Any]) -> None:
+def put_in_order(renderer: vtkRenderer, actors: Sequence[Any]) -> None:
     """Order the actors of a renderer, whenever each was added: of things in one place the first shows."""
     props = renderer.GetViewProps()
     places = [props.IsItemPresent(actor) for actor in actors]  # from 1 on
@@ -78,7 +84,7 @@ def put_in_order(renderer: Any, actors: Sequence[Any]) -> None:
         renderer.Modified()
 
 
-def look_as(plotter: Any, actor: Any, old: Layer, new: Layer, loaded: Loaded, colours: Colours) -> Any:
+def look_as(plotter: pv.BasePlotter, actor: Any, old: Layer, new: Layer, loaded: Loaded, colours: Colours) -> Any:
     """Bring an actor's looks in step with its layer; return the actor, which of meshes is another one."""
     before, after = looks(old.kind, old.settings), looks(new.kind, new.settings)
     if before != after:
@@ -149,7 +155,7 @@ def filter_as(actor: Any, old: Filters, new: Filters, load: Load, ends: Ends, co
             actor.remove_condition(_CONNECTION)
 
 
-def connecting(ends: Ends, fiblets: Any, connection: Mapping[str, Any]) -> np.ndarray:
+def connecting(ends: Ends, fiblets: FibletSet, connection: Mapping[str, Any]) -> np.ndarray:
     """``(n,)`` bool: streamlines that connect the two parcels of a filter."""
     found = np.sort(ends(fiblets, connection["labels"], connection["radius"]), axis=1)
     return np.asarray((found == np.sort(connection["pair"])).all(axis=1))

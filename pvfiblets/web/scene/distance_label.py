@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.web.session.document import Measurement
+
+if TYPE_CHECKING:
+    import pyvista as pv
 
 _LINE, _TEXT = "measured-line", "measured-text"
 _COLOUR = "#ffcc00"
@@ -18,7 +21,7 @@ LABELS: dict[str, Any] = {
 """Looks of lines and lengths, as arguments of ``plotter.add_mesh`` and ``plotter.add_point_labels``."""
 
 
-def show_distances(plotter: Any, measurements: Sequence[Measurement]) -> None:
+def show_distances(plotter: pv.BasePlotter, measurements: Sequence[Measurement]) -> None:
     """Show some distances in place of those before."""
     import numpy as np
     import pyvista as pv
@@ -38,7 +41,7 @@ def show_distances(plotter: Any, measurements: Sequence[Measurement]) -> None:
 
 
 @contextmanager
-def hidden_distances(plotter: Any) -> Iterator[None]:
+def hidden_distances(plotter: pv.BasePlotter) -> Iterator[None]:
     """Draw pictures without distances in this scope, so that depths read from them are the scene's."""
     found = [plotter.actors[name] for name in names_of(plotter)]
     for actor in found:
@@ -52,6 +55,6 @@ def hidden_distances(plotter: Any) -> Iterator[None]:
             actor.SetVisibility(True)
 
 
-def names_of(plotter: Any) -> list[str]:
+def names_of(plotter: pv.BasePlotter) -> list[str]:
     """Return the names of the actors that show distances."""
     return [name for name in (_LINE, f"{_TEXT}-labels", f"{_TEXT}-points") if name in plotter.actors]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.fiblets.looks import LOOKS
 from pvfiblets.plotting.fiblets.settings import FibletSettings
@@ -21,15 +21,18 @@ from pvfiblets.web.scene.properties import Choices, Property
 from pvfiblets.web.scene.slices.glyph_layers import GLYPHS, VECTORS
 from pvfiblets.web.scene.slices.glyph_layers import ROWS as GLYPH_ROWS
 
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
 
-def value_names(fiblets: Any) -> list[str]:
+
+def value_names(fiblets: FibletSet) -> list[str]:
     """Names of numbers that fiblets have, per streamline or per point."""
     from pvfiblets.query.measures.measures import measure_names
 
     return [name for name in measure_names(fiblets) if name != "coding_error" or name in fiblets.per_point]
 
 
-def _line_scalars(fiblets: Any) -> Choices:
+def _line_scalars(fiblets: FibletSet) -> Choices:
     from pvfiblets.plotting.colours.scalars import COUNTED, ORIENTATION, UNITS
     from pvfiblets.plotting.fiblets.scalars import DENSITY, ENDS, GROUP, ID, RANDOM
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 import weakref
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.mappers.frames.scene import USUAL_DPI
 from pvfiblets.plotting.colours.scalar_bar_labels import label_format, label_text
 from pvfiblets.web.scene.scalar_bar_layout import MOST_LABELS, Place, Wanted, arrange
 from pvfiblets.web.session.document import Layer
+
+if TYPE_CHECKING:
+    import pyvista as pv
 
 MOST_BARS = 6
 
@@ -18,7 +21,7 @@ MOST_BARS = 6
 class Bars:
     """The colour bars of a plotter; they are placed anew whenever its window has another size."""
 
-    def __init__(self, plotter: Any) -> None:
+    def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter = plotter
         self._shown: list[tuple[Any, ...]] = []
         self._wanted: list[Wanted] = []

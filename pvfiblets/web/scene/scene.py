@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.formats.attachments import name_of
 from pvfiblets.support.vtk_space import Space
@@ -55,6 +55,9 @@ from pvfiblets.web.session.document import (
 from pvfiblets.web.session.store import Store
 from pvfiblets.web.values import colour, text
 
+if TYPE_CHECKING:
+    import pyvista as pv
+
 MOST_LAYERS = 64
 MOST_VALUES = 64  # files of values of one layer
 LONGEST_NAME = 1024  # largest number of characters of a layer's name
@@ -86,7 +89,7 @@ class Scene:
     """
 
     def __init__(
-        self, plotter: Any, root: Path | None = None, *, allowed: Any = (), look: str | None = None,
+        self, plotter: pv.BasePlotter, root: Path | None = None, *, allowed: Any = (), look: str | None = None,
         cluster: str | None = None,  # whose workers draw fiblets, as of `plotter.add_fiblets`
     ) -> None:  # fmt: skip
         self.plotter = plotter  # drawn into; it is the scene's own
@@ -323,10 +326,6 @@ class Scene:
         tracts, head = [self.add(one) for one in loaded]
         self.show(head.id, False)
         return [tracts, self.layer(head.id)]
-
-    def add_demo(self, streamlines: int = 5000, voxels: int = 64) -> list[Layer]:
-        """Make tracts and a head up, and add them."""
-        return self.add_loaded_demo(self.load_demo(streamlines, voxels))
 
     def remove(self, layer_id: str) -> None:
         """Take a layer away."""

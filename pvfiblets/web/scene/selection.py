@@ -13,6 +13,7 @@ from pvfiblets.web.session.document import LINES, Ids, Layer
 from pvfiblets.web.values import number, numbers, plain, shown, truth, whole
 
 if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.web.scene.scene import Scene
 
 MODES = ("replace", "add", "remove", "toggle")
@@ -218,7 +219,7 @@ def _volume_profile(actor: Any, ids: np.ndarray, volume: Any, n: int) -> dict[st
     }  # fmt: skip
 
 
-def _along(fiblets: Any, ids: np.ndarray, volume: Any) -> tuple[np.ndarray, np.ndarray]:
+def _along(fiblets: FibletSet, ids: np.ndarray, volume: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return a volume's values at the points of streamlines, as ``point_values`` does."""
     lines = fiblets.decompress(ids)
     return volume.at(lines.points), lines.offsets

@@ -13,6 +13,7 @@ from pvfiblets.web.scene.files.loading import Cancel, Files, Loaded, Progress, W
 from pvfiblets.web.session.document import LINES, Layer, Matrix, Source, State
 
 if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.query.connectome.matrix import Connectome
 
 __all__ = ["Store"]
@@ -116,7 +117,12 @@ class Store:
         return volume.labels, volume.affine
 
     def end_labels(
-        self, fiblets: Any, path: str, radius: float, progress: Progress | None = None, cancel: Cancel | None = None
+        self,
+        fiblets: FibletSet,
+        path: str,
+        radius: float,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
     ) -> Any:
         """Return the parcels in which streamlines end, ``(n, 2)``, as :func:`.end_labels`; the latest are kept."""
         found = next((one for one in self.ends if one.fiblets is fiblets and one.at == (path, radius)), None)
@@ -128,7 +134,7 @@ class Store:
             self.ends = [*self.ends[1 - KEPT :], found]
         return found.labels
 
-    def connectome(self, fiblets: Any, matrix: Matrix) -> Connectome | None:
+    def connectome(self, fiblets: FibletSet, matrix: Matrix) -> Connectome | None:
         """Return the numbers of a matrix; None if they are not known."""
         known = (found for data, of, found in self.connectomes if data is fiblets and of == matrix.bare)
         return next(known, None)

@@ -12,11 +12,18 @@ import logging
 import re
 import zlib
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets import page
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.view.sent_scene import LARGEST, MOST, SentScene, SentScenes
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from aiohttp import web
+
+    from pvfiblets.web.app import Explorer
 
 logger = logging.getLogger("pvfiblets.web")
 
@@ -31,7 +38,7 @@ PACKED = 1  # how hard zlib tries on pixels: a third of a slice's bytes are left
 class BrowserDrawing(Actions):
     """Client-side rendering of an application: whether the browser renders, and its messages."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         options = app.options
         alone = not options.shared and options.cluster is None
@@ -61,7 +68,7 @@ class BrowserDrawing(Actions):
         self._camera = None  # a page that was reloaded knows of none
         self._app.stream.request()
 
-    def moved(self, camera: Any, origin: Any, rests: Any, turn: Any) -> None:
+    def moved(self, camera: Mapping[str, Any], origin: Any, rests: Any, turn: Any) -> None:
         """Put the camera where a browser has moved it, unless it was moved before by another that this one lacks."""
         app = self._app
         mover = str(origin)[:40]
@@ -142,13 +149,13 @@ class BrowserDrawing(Actions):
 
     # What browsers fetch
 
-    async def send_script(self, _: Any) -> Any:
+    async def send_script(self, _: Any) -> web.FileResponse:
         """Respond to a browser that fetches the scene's data."""
         from aiohttp import web
 
         return web.FileResponse(Path(page.__file__).with_name("page.js"), headers={"Content-Type": "text/javascript"})
 
-    async def send(self, request: Any) -> Any:
+    async def send(self, request: web.Request) -> web.Response:
         """Answer a browser that fetches data."""
         from aiohttp import web
 

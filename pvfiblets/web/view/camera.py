@@ -9,7 +9,7 @@ import numpy as np
 from pvfiblets.support import memory
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.panels.charts import short
-from pvfiblets.web.panels.describe import typed
+from pvfiblets.web.panels.describe import typed, typed_or_none
 from pvfiblets.web.scene.cameras import LARGEST_PICTURE
 from pvfiblets.web.values import whole
 
@@ -69,13 +69,13 @@ class CameraActions(Actions):
         from PIL import Image
 
         app = self._app
-        size = [whole(typed(text, name, optional=False), name, 16, LONGEST)
+        size = [whole(typed(text, name), name, 16, LONGEST)
                 for text, name in ((width, "width"), (height, "height"))]  # fmt: skip
         if size[0] * size[1] > LARGEST_PICTURE:
             raise ValueError(
                 f"a picture of {size[0]} x {size[1]} is too large; give {LARGEST_PICTURE:,} pixels at most"
             )
-        dots = typed(dpi, "dpi", optional=True)
+        dots = typed_or_none(dpi, "dpi")
         if dots is not None and not 1.0 <= dots <= 10_000.0:
             raise ValueError(f"dpi is {short(dots)}; give 1 to 10,000 pixels per inch, or nothing")
         taken = memory.within(lambda: app.stream.picture_of(*size, transparent=transparent is True))

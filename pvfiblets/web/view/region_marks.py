@@ -7,10 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkCamera
 
 CORNERS = 32  # of a circle
 THINNEST = 1e-3  # of a box: a face is not dragged nearer than this share of its side to the other
@@ -20,7 +23,7 @@ _Floats = NDArray[np.float64]
 class Sight:
     """The projection of a camera."""
 
-    def __init__(self, camera: Any, width: int, height: int) -> None:
+    def __init__(self, camera: vtkCamera, width: int, height: int) -> None:
         matrix = camera.GetCompositeProjectionTransformMatrix(width / max(height, 1), -1.0, 1.0)
         self._matrix = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
         self._inverse = np.linalg.inv(self._matrix)

@@ -21,6 +21,8 @@ from pvfiblets.web.scene.slices.glyph_layers import GLYPHS
 from pvfiblets.web.session.document import LINES
 
 if TYPE_CHECKING:
+    import pyvista as pv
+
     from pvfiblets.web.scene.scene import Scene
 
 __all__ = ["LARGEST", "URL", "SentScene", "SentScenes"]
@@ -92,7 +94,7 @@ class SentScenes:
         return found[1]
 
 
-def add_all(page: PageScene, plotter: Any) -> list[str]:
+def add_all(page: PageScene, plotter: pv.BasePlotter) -> list[str]:
     """Set a page to a plotter's scene without measured distances; return its unsupported parts."""
     from pvfiblets.plotting.page import page_scene  # PyVista is loaded by then
 

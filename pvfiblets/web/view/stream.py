@@ -22,7 +22,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,10 @@ from pvfiblets.web.server.rpc_allowlist import MOST_PIXELS
 from pvfiblets.web.view.encoding import encode
 from pvfiblets.web.view.pace import LEVELS, Level, Pace
 from pvfiblets.web.view.touch import Fingers
+
+if TYPE_CHECKING:
+    import pyvista as pv
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
 logger = logging.getLogger("pvfiblets.web")
 
@@ -54,7 +58,7 @@ class PictureStream:
 
     def __init__(
         self,
-        plotter: Any,  # off screen, with an interactor
+        plotter: pv.BasePlotter,  # off screen, with an interactor
         name: str,  # the area's name
         *,
         codec: str = "jpeg",  # how pictures travel. PNG has no quality: it is the same at rest and in motion.
@@ -77,7 +81,6 @@ class PictureStream:
         self.still_quality = still
         self.frames = 0  # drawn
         self.sent = 0  # pictures
-        self.sent_bytes = 0
         self.times: deque[float] = deque(maxlen=30)  # seconds that each of the last frames took to draw
         self._plotter = plotter
         self._pending = pending  # the number of messages that the network has not taken yet
@@ -409,7 +412,7 @@ class PictureStream:
                 *(int(k * now / then) for k, now, then in zip(at, self._pixels, before, strict=True))
             )
 
-    async def _frame_without(self, renderer: Any) -> None:
+    async def _frame_without(self, renderer: vtkRenderer) -> None:
         """Draw and send all other views; later picks need a new frame."""
         coarse = self.moving
         renderer.SetDraw(False)
@@ -468,4 +471,3 @@ class PictureStream:
         }  # fmt: skip
         self._streamer.push_content(self.area_name, meta, content)
         self.sent += 1
-        self.sent_bytes += len(content)

@@ -9,9 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
 
 GESTURES = ("Pinch", "Pan", "Rotate")
 LEAST = 8.0  # pixels between fingers: nearer ones have neither a sure distance nor a sure direction
@@ -30,7 +34,7 @@ class _Pair(NamedTuple):
 class Fingers:
     """Two fingers that steer a plotter's camera."""
 
-    def __init__(self, plotter: Any, pane_at: Callable[[float, float], Any] = lambda _x, _y: None) -> None:
+    def __init__(self, plotter: pv.BasePlotter, pane_at: Callable[[float, float], Any] = lambda _x, _y: None) -> None:
         self._plotter = plotter
         self._pane_at = pane_at  # from a pixel to the pane of slices that it is in; None for the plotter's camera
         self._pane: Any = None
@@ -88,14 +92,14 @@ def _follow_in(pane: Any, before: _Pair, now: _Pair) -> None:
     pane.pan_by(now.x - x, now.y - y)
 
 
-def _zoom(camera: Any, times: float) -> None:
+def _zoom(camera: pv.Camera, times: float) -> None:
     if camera.parallel_projection:
         camera.parallel_scale /= times
     else:
         camera.Dolly(times)
 
 
-def _shift(camera: Any, across: float, up: float, height: int) -> None:
+def _shift(camera: pv.Camera, across: float, up: float, height: int) -> None:
     """Move the camera so that the focal plane follows the fingers."""
     ahead = np.subtract(camera.focal_point, camera.position)
     distance = float(np.linalg.norm(ahead))

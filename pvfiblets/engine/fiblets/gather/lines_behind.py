@@ -12,7 +12,8 @@ import moderngl
 from ...view import View
 from ..fiblet_drawable import FibletDrawable
 from ..style import FibletStyle
-from .depth_peeling import LayeredBuffer, Layers
+from .depth_peeling import Layers
+from .layered_buffer import LayeredBuffer
 
 if TYPE_CHECKING:
     from ...culling import Occlusion

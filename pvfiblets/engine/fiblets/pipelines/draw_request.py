@@ -12,8 +12,8 @@ from ..data.chunks import Chunk
 
 if TYPE_CHECKING:
     from ...culling.occlusion import Occlusion
-    from ..gather.depth_peeling import Peel
     from ..gather.gathering import Gather
+    from ..gather.layered_buffer import Peel
     from ..visibility import Visibility
 
 

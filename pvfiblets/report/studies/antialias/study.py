@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,9 @@ from ...study import LATE, Options, Unavailable
 from ...timing import timing
 from ...window import Window
 from ..codec.data_sets import files_of
+
+if TYPE_CHECKING:
+    import pyvista as pv
 
 SIZE, QUICK_SIZE, FILE_SIZE = (800, 600), (320, 240), (1000, 800)
 SCREEN = (1920, 1080)
@@ -55,7 +58,7 @@ def variants(quick: bool) -> list[Variant]:
     def multi(samples: int) -> Callable[[Any], object]:
         return lambda plotter: plotter.enable_anti_aliasing("msaa", multi_samples=samples)
 
-    def fxaa(plotter: Any) -> None:
+    def fxaa(plotter: pv.BasePlotter) -> None:
         plotter.renderer.SetUseFXAA(True)  # PyVista has SSAA instead where it is not sure that this works
 
     found = [Variant(OURS, "refined", "refined"), Variant(OURS, "off"), Variant(OURS, "coverage", "coverage")]
@@ -87,38 +90,38 @@ def subjects(options: Options) -> list[Subject]:
     few = brain_streamlines(QUICK_BUNDLE if quick else BUNDLE, step=QUICK_STEP, seed=options.seed)
     thick = few[np.arange(QUICK_TUBES if quick else TUBES)]
 
-    def look(plotter: Any, zoom: float) -> None:
+    def look(plotter: pv.BasePlotter, zoom: float) -> None:
         plotter.view_vector((1.0, 0.8, 0.5), (0.0, 0.0, 1.0))
         plotter.camera.zoom(zoom)
 
     def whole(segments: int) -> Subject:
         step = QUICK_STEP if quick else STEP
 
-        def fill(plotter: Any) -> None:
+        def fill(plotter: pv.BasePlotter) -> None:
             streamlines = brain_streamlines(max(round(segments * step / LENGTH), 1), step=step, seed=options.seed)
             plotter.add_fiblets(compress(streamlines), show_scalar_bar=False)
             look(plotter, 1.4)
 
         return Subject(f"brain of {segments:,} segments", fill, size=QUICK_SIZE if quick else SCREEN)
 
-    def bundle(plotter: Any) -> None:
+    def bundle(plotter: pv.BasePlotter) -> None:
         plotter.add_fiblets(few, color="orange", lighting=False, line_width=2, show_scalar_bar=False)
         look(plotter, 3.0)
 
-    def tubes(plotter: Any) -> None:
+    def tubes(plotter: pv.BasePlotter) -> None:
         plotter.add_spline_tubes(thick, radius=0.6, color="orange", show_scalar_bar=False)
         look(plotter, 2.0)
 
-    def halos(plotter: Any) -> None:
+    def halos(plotter: pv.BasePlotter) -> None:
         plotter.add_halo_lines(few)
         look(plotter, 2.0)
 
-    def surface(plotter: Any) -> None:
+    def surface(plotter: pv.BasePlotter) -> None:
         bundle(plotter)
         middle = 0.5 * (few.points.min(axis=0) + few.points.max(axis=0))
         plotter.add_mesh(pv.Sphere(radius=20.0, center=middle, theta_resolution=12, phi_resolution=8), color="white")
 
-    def lines(plotter: Any) -> None:
+    def lines(plotter: pv.BasePlotter) -> None:
         starts, ends = few.offsets[:-1], few.offsets[1:]
         cells = [np.concatenate([[b - a], np.arange(a, b)]) for a, b in zip(starts, ends, strict=True)]
         poly = pv.PolyData(np.asarray(few.points, np.float64), lines=np.concatenate(cells))
@@ -126,7 +129,7 @@ def subjects(options: Options) -> list[Subject]:
         look(plotter, 3.0)
 
     def file(path: Path) -> Subject:
-        def fill(plotter: Any) -> None:
+        def fill(plotter: pv.BasePlotter) -> None:
             plotter.add_fiblets(path, show_scalar_bar=False)
             look(plotter, 1.4)
 

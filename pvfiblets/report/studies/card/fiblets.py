@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     import moderngl
 
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
+    from pvfiblets.engine.fiblets.renderer import FibletRenderer
+    from pvfiblets.engine.gbuffer import GBuffer
 
 STREAMLINES, STEP = 400, 1.0  # of the synthetic brain, mm
 DEGREES = 3.0  # from picture to picture
@@ -83,7 +86,7 @@ def fiblets_part(ctx: moderngl.Context, pipeline: str) -> Iterator[tuple[str, Ca
     yield "streamlines in a sphere", partial(_query, ctx, pipeline)
 
 
-def _renderer(ctx: moderngl.Context, pipeline: str, culling: str = "two-phase") -> Any:
+def _renderer(ctx: moderngl.Context, pipeline: str, culling: str = "two-phase") -> FibletRenderer:
     from pvfiblets.engine.fiblets.renderer import FibletRenderer
 
     return FibletRenderer(ctx, brain().fiblets, pipeline=pipeline, culling=None if culling == "none" else culling)
@@ -103,7 +106,7 @@ def _above(points: Array) -> npt.NDArray[np.bool_]:
     return np.asarray(points @ PLANE[0, :3] + PLANE[0, 3] >= 0.0)
 
 
-def _height_volume() -> Any:
+def _height_volume() -> VolumeSource:
     """Return a volume whose value is z everywhere in the brain."""
     from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 
@@ -176,7 +179,7 @@ def _tubes(ctx: moderngl.Context, pipeline: str) -> Scene:
     path = orbit(tubes, "far", 90, SMALL)[:PICTURES]
     renderer = FibletRenderer(ctx, fiblets, pipeline=pipeline)
 
-    def draw(number: int) -> Any:
+    def draw(number: int) -> GBuffer:
         camera = path[number]
         style = FibletStyle(radius=RADIUS, tolerance=0.0, exact=True)
         return renderer.render(View(camera.size, camera.model_view_projection), style)

@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,9 @@ import numpy.typing as npt
 from pvfiblets.engine.gbuffer import EMPTY
 
 from ..culling.pictures import directions
+
+if TYPE_CHECKING:
+    from pvfiblets.engine.gbuffer import GBuffer
 
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -42,7 +45,7 @@ class Shown(NamedTuple):
     value: Array
 
 
-def shown(gbuffer: Any) -> Shown:
+def shown(gbuffer: GBuffer) -> Shown:
     """Read a G-buffer."""
     width, height = gbuffer.size
     keys = np.frombuffer(gbuffer.depth.read(), np.uint32).reshape(height, width)

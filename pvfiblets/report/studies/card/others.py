@@ -20,6 +20,10 @@ from .scenes import SIZE, SMALL, Judged, Scene
 if TYPE_CHECKING:
     import moderngl
 
+    from pvfiblets.engine.gbuffer import GBuffer
+    from pvfiblets.tubes import SplineTubes
+    from pvfiblets.volumes import RaycastVolume
+
 TURNS = 90  # pictures of a whole turn
 PICTURES = 4
 TUBES, HELICES, VOXELS = 5, 6, 40
@@ -35,7 +39,7 @@ Made = Iterator[tuple[str, Callable[[], Scene]]]
 # --------------------------------------------------------------------------------------------------------------- tubes
 
 
-def capsules_of(lines: Sequence[Array], radius: float) -> Any:
+def capsules_of(lines: Sequence[Array], radius: float) -> SplineTubes:
     """Return polylines as spline tubes: straight segments of one radius, each with nodes of its own."""
     from pvfiblets.tubes import SplineTubes
 
@@ -49,7 +53,7 @@ def capsules_of(lines: Sequence[Array], radius: float) -> Any:
     )  # fmt: skip
 
 
-def judge_depths(gbuffer: Any, tubes: Any, camera: Camera) -> Judged:
+def judge_depths(gbuffer: GBuffer, tubes: Any, camera: Camera) -> Judged:
     """Hold a G-buffer against where rays meet tubes."""
     lens, truth = Lens.from_camera(camera), _truth(tubes, camera)
     keys = np.frombuffer(gbuffer.depth.read(), np.uint32)
@@ -90,7 +94,7 @@ def _tubes(ctx: moderngl.Context, **options: Any) -> Scene:
     tubes, path = _helices()
     renderer = TubeRenderer(ctx, tubes, **options)
 
-    def draw(number: int) -> Any:
+    def draw(number: int) -> GBuffer:
         view = View(path[number].size, path[number].model_view_projection)
         return renderer.render(view, TubeStyle(min_width=0.0))
 
@@ -125,7 +129,7 @@ def _halos(ctx: moderngl.Context, points: bool = False, **more: Any) -> Scene:
     path = halo_orbit(drawn, 1, PICTURES - 1, SIZE)[0]
     renderer = HaloRenderer(ctx, drawn)
 
-    def draw(number: int) -> Any:
+    def draw(number: int) -> GBuffer:
         return renderer.render(View(path[number].size, path[number].model_view_projection), finer(look, 1))
 
     def judge(last: Any) -> Judged:
@@ -146,7 +150,7 @@ def _halos(ctx: moderngl.Context, points: bool = False, **more: Any) -> Scene:
 
 
 @cache
-def _waves() -> Any:
+def _waves() -> RaycastVolume:
     """Return a smooth ball with waves on it: no detail is finer than a voxel."""
     from pvfiblets.volumes import RaycastVolume
 
@@ -181,7 +185,7 @@ def _volume(ctx: moderngl.Context, mode: str, filter: str = "trilinear", **more:
     renderer = VolumeRenderer(ctx, volume)
     style = VolumeStyle(casting=look.casting(filter=filter, **more))
 
-    def draw(number: int) -> Any:
+    def draw(number: int) -> GBuffer:
         camera = cameras[number]
         return renderer.render(View(camera.size, camera.model_view_projection), style)
 

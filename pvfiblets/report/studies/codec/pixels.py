@@ -16,6 +16,8 @@ from .data_sets import DataSet, file_sets
 from .errors import median_step
 
 if TYPE_CHECKING:
+    import pyvista as pv
+
     from pvfiblets.codec.fibletset import FibletSet
 
 SIZE, QUICK_SIZE = (960, 720), (240, 180)
@@ -135,11 +137,11 @@ def beyond(shown: Pixels, other: Pixels) -> Pixels:
     return shown & ~near
 
 
-def _by_vtk(pv: Any, plotter: Any, points: npt.ArrayLike, offsets: npt.NDArray[np.int64]) -> None:
+def _by_vtk(pv: Any, plotter: pv.BasePlotter, points: npt.ArrayLike, offsets: npt.NDArray[np.int64]) -> None:
     plotter.add_mesh(lines_of(pv, points, offsets), color="white", lighting=False, line_width=1, name="lines")
 
 
-def _drawn(plotter: Any, fiblets: FibletSet) -> None:
+def _drawn(plotter: pv.BasePlotter, fiblets: FibletSet) -> None:
     plotter.add_fiblets(fiblets, color="white", lighting=False, show_scalar_bar=False, name="lines")
 
 

@@ -25,6 +25,7 @@ import numpy.typing as npt
 
 from pvfiblets.codec.direction_codebook import cap_ratios, packed_scales, quaternions
 from pvfiblets.codec.jit import kernel
+from pvfiblets.support.array_types import Floats, UInt8s
 
 POINTS = 60
 ELEMENTS = 64
@@ -50,7 +51,7 @@ def inputs(dtype: npt.DTypeLike) -> tuple[Any, ...]:
 
 
 @kernel
-def _closed(number: Any, ratio: Any, unit: Any, rounded: bool, c: Any) -> Any:
+def _closed(number: float, ratio: float, unit: float, rounded: bool, c: Floats) -> tuple[float, float, float]:
     """Quaternion ``(w, y, z)`` of a code, whose x is 0."""
     one = c[1]
     t = number / c[4]
@@ -71,7 +72,9 @@ def _closed(number: Any, ratio: Any, unit: Any, rounded: bool, c: Any) -> Any:
 
 
 @kernel
-def _fill_quaternions(codes: Any, cap: int, source: int, first: Any, tables: Any, q: Any) -> None:
+def _fill_quaternions(
+    codes: UInt8s, cap: int, source: int, first: Floats, tables: tuple[Floats, ...], q: Floats
+) -> None:
     table, _, ratios, units, numbers, c = tables
     for k in range(4):
         q[1, k] = first[k]
@@ -86,7 +89,7 @@ def _fill_quaternions(codes: Any, cap: int, source: int, first: Any, tables: Any
 
 
 @kernel
-def _matrix(w: Any, x: Any, y: Any, z: Any, c: Any, m: Any) -> None:
+def _matrix(w: float, x: float, y: float, z: float, c: Floats, m: Floats) -> None:
     one, two = c[1], c[2]
     m[0], m[1], m[2] = one - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y)
     m[3], m[4], m[5] = two * (x * y + w * z), one - two * (x * x + z * z), two * (y * z - w * x)
@@ -94,7 +97,7 @@ def _matrix(w: Any, x: Any, y: Any, z: Any, c: Any, m: Any) -> None:
 
 
 @kernel
-def _fill_matrices(codes: Any, cap: int, source: int, first: Any, tables: Any, m: Any) -> None:
+def _fill_matrices(codes: UInt8s, cap: int, source: int, first: Floats, tables: tuple[Floats, ...], m: Floats) -> None:
     _, table, ratios, units, numbers, c = tables
     _matrix(first[0], first[1], first[2], first[3], c, m[1])
     for i in range(len(codes)):
@@ -108,7 +111,7 @@ def _fill_matrices(codes: Any, cap: int, source: int, first: Any, tables: Any, m
 
 
 @kernel
-def _product(a: Any, b: Any) -> Any:
+def _product(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:
     return (
         a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
         a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
@@ -118,7 +121,7 @@ def _product(a: Any, b: Any) -> Any:
 
 
 @kernel
-def _matrix_product(a: Any, b: Any) -> Any:
+def _matrix_product(a: Any, b: Floats) -> tuple[float, ...]:
     return (
         a[0] * b[0] + a[1] * b[3] + a[2] * b[6],
         a[0] * b[1] + a[1] * b[4] + a[2] * b[7],
@@ -133,7 +136,7 @@ def _matrix_product(a: Any, b: Any) -> Any:
 
 
 @kernel
-def _sequential_quaternions(q: Any, anchor: Any, step: Any, c: Any, out: Any) -> None:
+def _sequential_quaternions(q: Floats, anchor: Floats, step: float, c: Floats, out: Floats) -> None:
     one, two = c[1], c[2]
     f = (q[1, 0], q[1, 1], q[1, 2], q[1, 3])
     x, y, z = anchor[0], anchor[1], anchor[2]
@@ -148,7 +151,7 @@ def _sequential_quaternions(q: Any, anchor: Any, step: Any, c: Any, out: Any) ->
 
 
 @kernel
-def _sequential_matrices(m: Any, anchor: Any, step: Any, out: Any) -> None:
+def _sequential_matrices(m: Floats, anchor: Floats, step: float, out: Floats) -> None:
     f = (m[1, 0], m[1, 1], m[1, 2], m[1, 3], m[1, 4], m[1, 5], m[1, 6], m[1, 7], m[1, 8])
     x, y, z = anchor[0], anchor[1], anchor[2]
     out[0, 0], out[0, 1], out[0, 2] = x, y, z
@@ -162,7 +165,7 @@ def _sequential_matrices(m: Any, anchor: Any, step: Any, out: Any) -> None:
 
 
 @kernel
-def _prefix_quaternions(q: Any, t: Any, anchor: Any, step: Any, c: Any, out: Any) -> None:
+def _prefix_quaternions(q: Floats, t: Floats, anchor: Floats, step: float, c: Floats, out: Floats) -> None:
     zero, one, two = c[0], c[1], c[2]
     q[0, 0], q[0, 1], q[0, 2], q[0, 3] = one, zero, zero, zero
     t[0, 0], t[0, 1], t[0, 2] = zero, zero, zero
@@ -193,7 +196,7 @@ def _prefix_quaternions(q: Any, t: Any, anchor: Any, step: Any, c: Any, out: Any
 
 
 @kernel
-def _prefix_matrices(m: Any, t: Any, anchor: Any, step: Any, c: Any, out: Any) -> None:
+def _prefix_matrices(m: Floats, t: Floats, anchor: Floats, step: float, c: Floats, out: Floats) -> None:
     for k in range(9):
         m[0, k] = c[1] if k % 4 == 0 else c[0]
     t[0, 0], t[0, 1], t[0, 2] = c[0], c[0], c[0]
@@ -220,9 +223,8 @@ def _prefix_matrices(m: Any, t: Any, anchor: Any, step: Any, c: Any, out: Any) -
 
 
 @kernel
-def decode(
-    anchors: Any, firsts: Any, codes: Any, cap: int, step: Any, how: Any, tables: Any, scratch: Any, out: Any
-) -> None:
+def decode(anchors: Floats, firsts: Floats, codes: UInt8s, cap: int, step: Floats, how: tuple[int, int, int],
+           tables: tuple[Floats, ...], scratch: tuple[Floats, Floats, Floats], out: Floats) -> None:  # fmt: skip
     """Decode fiblets of equal length."""
     order, algebra, source = how
     q, m, t = scratch

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import moderngl
 
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.streamlines import Streamlines
 
     from ...record import Timing
 
@@ -129,7 +130,7 @@ def brain(options: Options) -> FibletSet:
 def subjects(options: Options) -> list[Callable[[], Subject]]:
     """Return what makes each subject, so that one at a time is in memory."""
 
-    def streamlines() -> Any:
+    def streamlines() -> Streamlines:
         from pvfiblets.synthetic import brain_streamlines
 
         return brain_streamlines(QUICK_TUBES if options.quick else TUBES, step=1.0, seed=options.seed)

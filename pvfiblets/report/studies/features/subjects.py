@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import moderngl
 
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.query.regions.surfaces import Surface
 
 LAYERS = 4
 WIDTH, RADIUS = 3.0, 0.5  # pixels of wide lines, mm of tubes
@@ -129,7 +130,7 @@ def brain_subject(fiblets: FibletSet) -> Subject:
         Feature("pipeline", "tessellation", options={"pipeline": "tessellation"}),
     ]
 
-    def make(ctx: moderngl.Context, **options: Any) -> Any:
+    def make(ctx: moderngl.Context, **options: Any) -> FibletRenderer:
         return FibletRenderer(ctx, fiblets, **options)
 
     return Subject("streamlines", make, FibletStyle(), fiblets.bounds, features)
@@ -143,7 +144,7 @@ def _by_planes(region: Any) -> dict[str, Any]:
     return {"clip_planes": planes, "region": rest}
 
 
-def torus(centre: Any, radius: float, around: int = 48, across: int = 24) -> Any:
+def torus(centre: Any, radius: float, around: int = 48, across: int = 24) -> Surface:
     """Return a closed surface with a hole, of ``2 * around * across`` triangles."""
     from pvfiblets import regions
 
@@ -172,7 +173,7 @@ def tube_subject(tubes: Any) -> Subject:
         Feature("solver", "newton", options={"solver": "newton"}),
     ]
 
-    def make(ctx: moderngl.Context, **options: Any) -> Any:
+    def make(ctx: moderngl.Context, **options: Any) -> TubeRenderer:
         return TubeRenderer(ctx, tubes, **options)
 
     return Subject("spline tubes", make, TubeStyle(), tubes.bounds, features)
@@ -202,7 +203,7 @@ def halo_subject(lines: Any) -> Subject:
         Feature("culling", "none", options={"culling": None}),
     ]
 
-    def make(ctx: moderngl.Context, **options: Any) -> Any:
+    def make(ctx: moderngl.Context, **options: Any) -> HaloRenderer:
         return HaloRenderer(ctx, lines, **options)
 
     return Subject("lines with halos", make, HaloDrawStyle(look=look), lines.bounds, features)
@@ -240,7 +241,7 @@ def volume_subject(volume: Any) -> Subject:
         Feature("cut", "outside a box", view={"region": ~regions.Box(inner)}),
     ]
 
-    def make(ctx: moderngl.Context, **options: Any) -> Any:
+    def make(ctx: moderngl.Context, **options: Any) -> VolumeRenderer:
         return VolumeRenderer(ctx, volume, **options)
 
     return Subject("volume", make, VolumeStyle(casting=mip), volume.bounds, features)

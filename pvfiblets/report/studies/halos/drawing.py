@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import moderngl
 
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.engine.gbuffer import GBuffer
 
 
 class Drawing(Protocol):
@@ -52,7 +53,7 @@ class Strips:
         self.renderer = HaloRenderer(ctx, drawn, culling=culling)
         self._times = times
 
-    def render(self, camera: Viewpoint, look: HaloStyle) -> Any:
+    def render(self, camera: Viewpoint, look: HaloStyle) -> GBuffer:
         """Draw."""
         return self.renderer.render(_view(camera, self._times), finer(look, self._times))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,9 @@ from ...record import Figure
 from .pictures import Singles
 from .reference import HALO, LINE, NOTHING, Picture
 
+if TYPE_CHECKING:
+    from pvfiblets.engine.gbuffer import GBuffer
+
 PIXEL = 0.25  # mm, of the picture of crossings
 LINE_WIDTH, STRIP_WIDTH, DEEPEST = 2.0, 8.0, 8.0  # mm
 DEPTHS = (1.0, 2.3, 3.1, 4.05, 5.2, 6.35, 7.4, 9.0)  # mm from the lines in front to the lines behind
@@ -26,7 +29,7 @@ IN_FRONT = 12
 Floats = npt.NDArray[np.float64]
 
 
-def kinds(gbuffer: Any) -> tuple[npt.NDArray[np.int64], Floats]:
+def kinds(gbuffer: GBuffer) -> tuple[npt.NDArray[np.int64], Floats]:
     """Return what a G-buffer's pixels show, as the reference names it, and their window depth."""
     width, height = gbuffer.size
     keys, owner = (
@@ -36,7 +39,7 @@ def kinds(gbuffer: Any) -> tuple[npt.NDArray[np.int64], Floats]:
     return np.where(keys == EMPTY, NOTHING, shown), keys / float(EMPTY)
 
 
-def pixel_errors(gbuffer: Any, darkness: Singles, truth: Picture, camera: Camera) -> dict[str, Figure]:
+def pixel_errors(gbuffer: GBuffer, darkness: Singles, truth: Picture, camera: Camera) -> dict[str, Figure]:
     """Compare a picture of one sample a pixel with the reference's."""
     kind, depth = kinds(gbuffer)
     same = (kind == truth.kind) & (kind != NOTHING)

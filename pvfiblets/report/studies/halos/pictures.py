@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,9 @@ from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.spacing import default_widths
 
 from ...cameras import ELEVATION, VERTICAL_ANGLE, Camera
+
+if TYPE_CHECKING:
+    from pvfiblets.engine.gbuffer import GBuffer
 
 DEGREES_PER_FRAME = 1.14  # Schertzer et al. 2022, section 4.5: 90 degrees a second at 80 frames
 MOST_PIXELS = 1 << 24  # of one rendering; larger ones are drawn in tiles
@@ -98,10 +101,11 @@ def averaged(samples: Singles, times: int) -> Singles:
     return samples.reshape(height, times, width, times).mean(axis=(1, 3), dtype=np.float32)
 
 
-def darkness_of(gbuffer: Any) -> Singles:
+def darkness_of(gbuffer: GBuffer) -> Singles:
     """Return a G-buffer as black lines with white halos: (height, width) float32, 1 where it is black."""
     width, height = gbuffer.size
     keys = np.frombuffer(gbuffer.depth.read(), np.uint32).reshape(height, width)
+    assert gbuffer.across is not None  # lines have their ink there
     ink = np.frombuffer(gbuffer.across.read(), np.float16).reshape(height, width)
     return np.where(keys != EMPTY, ink, np.float16(0.0)).astype(np.float32)
 

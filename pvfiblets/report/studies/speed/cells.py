@@ -52,7 +52,7 @@ def _streamlines(segments: float, step: float) -> int:
     return max(1, round(segments * step / PER_STREAMLINE))
 
 
-def stored_brain(segments: float, step: float, folder: str | Path) -> Any:
+def stored_brain(segments: float, step: float, folder: str | Path) -> FibletSet:
     """Return a set of about so many segments, from a file in a folder if it is there already."""
     from pvfiblets import FibletSet
     from pvfiblets.synthetic import brain

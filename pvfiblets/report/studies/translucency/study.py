@@ -59,12 +59,12 @@ def _subjects(options: Options, pv: Any) -> list[Subject]:
     n = max(round((QUICK_SEGMENTS if options.quick else SEGMENTS) * STEP / LENGTH), 1)
     fiblets = compress(brain_streamlines(n, step=STEP, seed=options.seed))
 
-    def whole(plotter: Any) -> None:
+    def whole(plotter: pv.BasePlotter) -> None:
         plotter.add_fiblets(fiblets, name="lines", show_scalar_bar=False)
         plotter.view_vector((1.0, 0.8, 0.5), (0.0, 0.0, 1.0))
         plotter.camera.zoom(1.4)
 
-    def beside(plotter: Any) -> None:
+    def beside(plotter: pv.BasePlotter) -> None:
         whole(plotter)
         middle = np.reshape(fiblets.bounds, (3, 2)).mean(axis=1)
         plotter.add_mesh(pv.Sphere(radius=30.0, center=middle), color="white", opacity=0.3)

@@ -85,7 +85,7 @@ def clearance(controls: Array, origins: Array, directions: Array) -> Array:
     return surface_distance(flat, np.zeros_like(origins))
 
 
-def halves(count: int, rng: Any, length: Any, radius: Any, bend: float, change: Any) -> Array:
+def halves(count: int, rng: np.random.Generator, length: Any, radius: Any, bend: float, change: Any) -> Array:
     """Return (count, 3, 4) halves of a length and radius: bent by a share of the length, radii by a share of theirs."""
     made = np.zeros((count, 3, 4))
     run = length * unit(rng.normal(size=(count, 3)))
@@ -95,7 +95,7 @@ def halves(count: int, rng: Any, length: Any, radius: Any, bend: float, change: 
     return made
 
 
-def _flat_ended(count: int, rng: Any) -> Array:
+def _flat_ended(count: int, rng: np.random.Generator) -> Array:
     """Return (count, 3, 4) halves of segments of length 1 with every combination of slopes of 0 at their nodes."""
     chord, pairs = unit(rng.normal(size=(count, 3))), np.arange(2 * count).reshape(-1, 2)
     slopes = np.concatenate(
@@ -110,7 +110,7 @@ def _flat_ended(count: int, rng: Any) -> Array:
     return curves.controls(tubes)[np.arange(count), rng.integers(0, 2, count)]
 
 
-def aimed(controls: Array, rng: Any, directions: Array | None = None, eye: Array | None = None) -> Rays:
+def aimed(controls: Array, rng: np.random.Generator, directions: Array | None = None, eye: Array | None = None) -> Rays:
     """Return rays that pass some sphere of each half within 1.15 radii of its middle: from anywhere, or from an eye."""
     count = len(controls)
     sphere = curves.evaluate(controls, rng.uniform(0.0, 1.0, count))

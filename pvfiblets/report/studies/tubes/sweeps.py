@@ -17,17 +17,17 @@ __all__ = ["PICTURE_SWEEPS", "SWEEPS"]
 DECADES = tuple(10.0**k for k in range(7))
 
 
-def longer(ratio: float, count: int, rng: Any) -> Rays:
+def longer(ratio: float, count: int, rng: np.random.Generator) -> Rays:
     """Return rays at halves so many radii long."""
     return aimed(halves(count, rng, ratio, 1.0, 0.1, 0.3), rng)
 
 
-def thicker(ratio: float, count: int, rng: Any) -> Rays:
+def thicker(ratio: float, count: int, rng: np.random.Generator) -> Rays:
     """Return rays at halves of so many lengths in radius."""
     return aimed(halves(count, rng, 1.0, ratio, 0.1, 0.3 / ratio), rng)
 
 
-def overshooting(ratio: float, count: int, rng: Any) -> Rays:
+def overshooting(ratio: float, count: int, rng: np.random.Generator) -> Rays:
     """Return rays at halves of Hermite segments with tangents of so many chords, the radius a tenth of a chord."""
     chord = unit(rng.normal(size=(count, 3)))
     slopes = ratio * unit(chord[:, None] + 0.5 * rng.normal(size=(count, 2, 3)))
@@ -38,14 +38,14 @@ def overshooting(ratio: float, count: int, rng: Any) -> Rays:
     return aimed(made, rng)
 
 
-def widening(ratio: float, count: int, rng: Any) -> Rays:
+def widening(ratio: float, count: int, rng: np.random.Generator) -> Rays:
     """Return rays at halves whose radius changes by so many lengths."""
     made = halves(count, rng, 1.0, 0.1, 0.1, 0.0)
     made[:, :, 3] += ratio * (0.5 * np.arange(3) + rng.uniform(-0.1, 0.1, (count, 3)) * [0.0, 1.0, 0.0])
     return aimed(made, rng)
 
 
-def lengthwise(degrees: float, count: int, rng: Any) -> Rays:
+def lengthwise(degrees: float, count: int, rng: np.random.Generator) -> Rays:
     """Return rays at so many degrees from the axis of straight halves, 20 radii long."""
     made = halves(count, rng, 20.0, 1.0, 0.0, 0.3)
     axis = unit(made[:, 2, :3])

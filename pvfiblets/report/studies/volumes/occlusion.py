@@ -114,7 +114,7 @@ class _Picture:
         """Return what runs the pass."""
         return lambda: self._draw(samples, smooth)
 
-    def _draw(self, samples: int, smooth: bool) -> Any:
+    def _draw(self, samples: int, smooth: bool) -> moderngl.Texture:
         texture = self._pass.draw(
             self._renderer, self._buffer, self._casting, self._view,
             radius=RADIUS, samples=samples, seed=0, smooth=smooth,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,13 +15,16 @@ from ..culling.pictures import directions
 from . import reference
 from .scene import Look, Truth, grey_of, lit, truth
 
+if TYPE_CHECKING:
+    from pvfiblets.engine.gbuffer import GBuffer
+
 Array = npt.NDArray[np.float64]
 Words = npt.NDArray[np.uint32]
 
 EMPTY = 0xFFFFFFFF
 
 
-def colours_of(gbuffer: Any, look: Look, camera: Camera) -> Array:
+def colours_of(gbuffer: GBuffer, look: Look, camera: Camera) -> Array:
     """Return the picture that a G-buffer means, by the lamp of meshes: ``(height, width, 3)``, row 0 at the bottom."""
     if look.mode == "composite":
         return light_of(gbuffer)[..., :3]
@@ -31,16 +34,18 @@ def colours_of(gbuffer: Any, look: Look, camera: Camera) -> Array:
         values = np.frombuffer(gbuffer.position.read(), np.float32).reshape(height, width, 2)[..., 1]
         shown = grey_of(values.astype(np.float64), look)
     else:
+        assert gbuffer.across is not None  # surfaces have their normals there
         normals = directions(np.frombuffer(gbuffer.across.read(), np.uint32)).reshape(height, width, 3)
         # They face the eye already.
         shown = lit(normals, -normals, camera.backwards)
     return np.where(there[..., None], shown, 0.0)
 
 
-def light_of(gbuffer: Any) -> Array:
+def light_of(gbuffer: GBuffer) -> Array:
     """Return light, multiplied by its opacity, and opacity: ``(height, width, 4)``, row 0 at the bottom."""
     width, height = gbuffer.size
     there = np.frombuffer(gbuffer.depth.read(), np.uint32).reshape(height, width) != EMPTY
+    assert gbuffer.colours is not None  # rays that add up have theirs there
     rgba = np.frombuffer(gbuffer.colours.read(), np.uint8).reshape(height, width, 4) / 255.0
     rgba[..., :3] *= rgba[..., 3:]
     found: Array = np.where(there[..., None], rgba, 0.0)

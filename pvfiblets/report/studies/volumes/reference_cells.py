@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pvfiblets.codec.jit import kernel
+from pvfiblets.support.array_types import Float32s, Float64s, Int64s
 
 NEAREST, TRILINEAR, TRICUBIC = range(3)
 
@@ -57,7 +58,7 @@ def scratch() -> Scratch:
 
 
 @kernel
-def enter(field: Any, how: int, origin: Any, direction: Any, t: float, cell: Any) -> None:
+def enter(field: Float32s, how: int, origin: Float64s, direction: Float64s, t: float, cell: Int64s) -> None:
     """Put the cell that a ray is in at ``t`` into `cell`."""
     for k in range(3):
         # A voxel is a cell of its own where the nearest one counts; else there is one between each two.
@@ -66,7 +67,7 @@ def enter(field: Any, how: int, origin: Any, direction: Any, t: float, cell: Any
 
 
 @kernel
-def leave(origin: Any, direction: Any, cell: Any, t: float) -> Any:
+def leave(origin: Float64s, direction: Float64s, cell: Int64s, t: float) -> tuple[float, int]:
     """Where a ray leaves a cell ``[cell, cell + 1)`` that it is in at ``t``, and across which axis."""
     nearest, axis = math.inf, -1
     for k in range(3):
@@ -79,14 +80,14 @@ def leave(origin: Any, direction: Any, cell: Any, t: float) -> Any:
 
 
 @kernel
-def _at(field: Any, i: int, j: int, k: int) -> float:
+def _at(field: Float32s, i: int, j: int, k: int) -> float:
     """A voxel; beyond the edges, the last one."""
     nx, ny, nz = field.shape
     return np.float64(field[min(max(i, 0), nx - 1), min(max(j, 0), ny - 1), min(max(k, 0), nz - 1)])
 
 
 @kernel
-def limits(field: Any, how: int, cell: Any) -> Any:
+def limits(field: Float32s, how: int, cell: Int64s) -> tuple[float, float]:
     """Numbers that the field in a cell does not go below and above."""
     if how == NEAREST:
         value = _at(field, cell[0], cell[1], cell[2])
@@ -118,7 +119,7 @@ def _blossom(p: float, q: float, r: float, s: float, x: float, y: float, z: floa
 
 
 @kernel
-def _restrict(tensor: Any, how: int, axis: int, i: int, j: int, a: float, b: float) -> None:
+def _restrict(tensor: Float64s, how: int, axis: int, i: int, j: int, a: float, b: float) -> None:
     """Turn values along one axis into coefficients over ``a`` to ``b``: 2 of a line, 4 of Catmull-Rom's cubic."""
     # `tensor` is flat, and `i` and `j` say which line of that axis it is.
     first = 4 * i + j if axis == 0 else (16 * i + j if axis == 1 else 16 * i + 4 * j)
@@ -136,7 +137,7 @@ def _restrict(tensor: Any, how: int, axis: int, i: int, j: int, a: float, b: flo
 
 
 @kernel
-def along(field: Any, how: int, memory: Scratch) -> int:
+def along(field: Float32s, how: int, memory: Scratch) -> int:
     """Bernstein coefficients of the field in a cell, from one place in it to another; gives their degree."""
     # Takes `memory.cell` and `memory.ends`, and leaves the coefficients in `memory.polynomial`.
     cell, tensor, polynomial = memory.cell, memory.tensor, memory.polynomial
@@ -177,7 +178,7 @@ def _choose(n: int, k: int) -> float:
 
 
 @kernel
-def evaluated(polynomial: Any, degree: int, s: float, work: Any) -> Any:
+def evaluated(polynomial: Float64s, degree: int, s: float, work: Float64s) -> tuple[float, float]:
     """A polynomial and its derivative at ``s``, by de Casteljau's scheme. `work` is ``(10,)``, overwritten."""
     if degree == 0:
         return polynomial[0], 0.0
@@ -190,7 +191,7 @@ def evaluated(polynomial: Any, degree: int, s: float, work: Any) -> Any:
 
 
 @kernel
-def solved(polynomial: Any, degree: int, low: float, high: float, value: float, work: Any) -> float:
+def solved(polynomial: Float64s, degree: int, low: float, high: float, value: float, work: Float64s) -> float:
     """Where a polynomial that is monotone from ``low`` to ``high`` takes a value; if nowhere, the end nearer to it."""
     at_low = evaluated(polynomial, degree, low, work)[0] - value
     at_high = evaluated(polynomial, degree, high, work)[0] - value
@@ -259,7 +260,7 @@ def extrema(degree: int, memory: Scratch) -> int:
 
 
 @kernel
-def sample(field: Any, how: int, at: Any, memory: Scratch) -> float:
+def sample(field: Float32s, how: int, at: Float64s, memory: Scratch) -> float:
     """The field at a place in voxels; outside the box of the voxel centres, at the nearest place in it."""
     if how == NEAREST:
         return _at(field, math.floor(at[0] + 0.5), math.floor(at[1] + 0.5), math.floor(at[2] + 0.5))

@@ -8,19 +8,21 @@ places it is monotone. Rays whose far end is not beyond their near one, or is Na
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from pvfiblets.codec.jit import kernel
 
+from ....support.array_types import Float32s, Float64s, Int64s
 from .reference_cells import NEAREST, Scratch, along, enter, evaluated, extrema, leave, limits, sample, scratch, solved
 
 SHORTEST = 1e-14  # part of its distance along a ray that a stretch takes at least to count
 
 
 @kernel
-def stretch(field: Any, how: int, origin: Any, direction: Any, a: float, b: float, memory: Scratch) -> int:
+def stretch(
+    field: Float32s, how: int, origin: Float64s, direction: Float64s, a: float, b: float, memory: Scratch
+) -> int:
     """Polynomial of the current cell from ``a`` to ``b`` mm along a ray; gives its degree."""
     for k in range(3):
         start = origin[k] - memory.cell[k]
@@ -30,7 +32,7 @@ def stretch(field: Any, how: int, origin: Any, direction: Any, a: float, b: floa
 
 
 @kernel
-def step(field: Any, how: int, direction: Any, axis: int, cell: Any) -> bool:
+def step(field: Float32s, how: int, direction: Float64s, axis: int, cell: Int64s) -> bool:
     """Go on to the cell beyond a border; say whether there is one."""
     if axis < 0:
         return False
@@ -61,8 +63,8 @@ def _crossed(state: int, before: int, after: int) -> int:
 
 @kernel
 def _next(
-    degree: int, a: float, b: float, levels: Any, states: Any, only: int, rounding: float, memory: Scratch
-) -> Any:
+    degree: int, a: float, b: float, levels: Float64s, states: Int64s, only: int, rounding: float, memory: Scratch
+) -> tuple[float, int]:
     """Which level the polynomial of a stretch crosses first from ``a`` to ``b``, and where."""
     # Between the two it is monotone. -1 for none. Takes the sides of all levels, or of `only` one, to `b`.
     start = evaluated(memory.polynomial, degree, a, memory.work)[0]
@@ -81,7 +83,7 @@ def _next(
 
 
 @kernel
-def _open(low: float, high: float, levels: Any, only: int) -> bool:
+def _open(low: float, high: float, levels: Float64s, only: int) -> bool:
     """Whether the levels that are looked for may be between two values."""
     found = False
     for k in range(len(levels)):
@@ -90,10 +92,9 @@ def _open(low: float, high: float, levels: Any, only: int) -> bool:
 
 
 @kernel
-def _first_crossing(
-    field: Any, how: int, origin: Any, direction: Any, near: float, far: float, levels: Any, rounding: float,
-    voxel: Any, memory: Scratch,
-) -> Any:  # fmt: skip
+def _first_crossing(field: Float32s, how: int, origin: Float64s, direction: Float64s, near: float, far: float,
+                    levels: Float64s, rounding: float, voxel: Int64s,
+                    memory: Scratch) -> tuple[int, float, float]:  # fmt: skip
     """Give the level that is crossed first, its t, and t of its next crossing or the far end; fill in the voxel."""
     states = np.zeros(len(levels), np.int64)
     t, hit, level, started = near, math.nan, -1, False
@@ -126,10 +127,9 @@ def _first_crossing(
 
 
 @kernel
-def first_crossings(
-    field: Any, how: int, origins: Any, directions: Any, near: Any, far: Any, levels: Any, rounding: float, t: Any,
-    level: Any, chord: Any, voxels: Any,
-) -> None:  # fmt: skip
+def first_crossings(field: Float32s, how: int, origins: Float64s, directions: Float64s, near: Float64s, far: Float64s,
+                    levels: Float64s, rounding: float, t: Float64s, level: Int64s, chord: Float64s,
+                    voxels: Int64s) -> None:  # fmt: skip
     """Where rays first cross one of several levels."""
     for i in range(len(t)):
         if near[i] < far[i]:
@@ -144,10 +144,8 @@ def first_crossings(
 
 
 @kernel
-def _greatest(
-    field: Any, how: int, origin: Any, direction: Any, near: float, far: float, low: float, high: float, enough: float,
-    fall: float, memory: Scratch,
-) -> Any:  # fmt: skip
+def _greatest(field: Float32s, how: int, origin: Float64s, direction: Float64s, near: float, far: float, low: float,
+              high: float, enough: float, fall: float, memory: Scratch) -> tuple[float, float]:  # fmt: skip
     """Give the greatest value and its t; see :func:`greatest`."""
     best, where = -math.inf, math.nan
     t = near
@@ -180,10 +178,8 @@ def _greatest(
 
 
 @kernel
-def greatest(
-    field: Any, how: int, origins: Any, directions: Any, near: Any, far: Any, low: float, high: float, enough: float,
-    fall: float, value: Any, t: Any,
-) -> None:  # fmt: skip
+def greatest(field: Float32s, how: int, origins: Float64s, directions: Float64s, near: Float64s, far: Float64s,
+             low: float, high: float, enough: float, fall: float, value: Float64s, t: Float64s) -> None:  # fmt: skip
     """Greatest value along rays of those from ``low`` to ``high``, the first that is at least ``enough`` if any is."""
     for i in range(len(t)):
         if near[i] < far[i]:
@@ -196,14 +192,14 @@ def greatest(
 
 
 @kernel
-def samples(field: Any, how: int, places: Any, values: Any) -> None:
+def samples(field: Float32s, how: int, places: Float64s, values: Float64s) -> None:
     """The field at places ``(n, 3)`` float64 in voxels, into ``values`` (n,) float64."""
     for i in range(len(values)):
         values[i] = sample(field, how, places[i], scratch())
 
 
 @kernel
-def gradients(field: Any, how: int, places: Any, found: Any) -> None:
+def gradients(field: Float32s, how: int, places: Float64s, found: Float64s) -> None:
     """Central differences of the field at places ``(n, 3)`` float64 in voxels, into ``found`` (n, 3) float64."""
     # Over one voxel to either side, or to the edge of the box of the voxel centres if that is nearer.
     for i in range(len(found)):

@@ -13,12 +13,12 @@ and after them, each from one value to another, and RGBA there and there. Length
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from pvfiblets.codec.jit import kernel
 
+from ....support.array_types import Float32s, Float64s
 from .reference_cells import Scratch, enter, evaluated, extrema, leave, limits, scratch, solved
 from .reference_kernels import step, stretch
 
@@ -28,7 +28,7 @@ ROUNDING = 1e-15  # of a part; no halving makes it less
 
 
 @kernel
-def _before(knots: Any, value: float, itself: bool) -> int:
+def _before(knots: Float64s, value: float, itself: bool) -> int:
     """How many knots lie below a value, or at it if `itself`."""
     low, high = 0, len(knots)
     while low < high:
@@ -47,7 +47,9 @@ def _depth(alpha: float, cap: float) -> float:
 
 
 @kernel
-def _quadrature(memory: Scratch, degree: int, length: float, piece: Any, rule: Any, cap: float, part: Any) -> None:
+def _quadrature(
+    memory: Scratch, degree: int, length: float, piece: Float64s, rule: tuple[Float64s, ...], cap: float, part: Float64s
+) -> None:
     """Optical depth and colour of a part of a stretch of a length, by one Gauss rule."""
     # `part` (7,) is where the part begins and ends, 0 to 1. The others are filled in: the optical depth, RGB, and the
     # opacity as the rule has it, which is that of the optical depth only if the nodes lie closely enough.
@@ -74,10 +76,9 @@ def _quadrature(memory: Scratch, degree: int, length: float, piece: Any, rule: A
 
 
 @kernel
-def _integrate(
-    memory: Scratch, degree: int, a: float, b: float, length: float, piece: Any, rule: Any, cap: float,
-    tolerance: float, stack: Any, light: Any,
-) -> None:  # fmt: skip
+def _integrate(memory: Scratch, degree: int, a: float, b: float, length: float, piece: Float64s,
+               rule: tuple[Float64s, ...], cap: float, tolerance: float, stack: Float64s,
+               light: Float64s) -> None:  # fmt: skip
     """Add the light of a piece of a stretch without kinks: `light` (4,) is RGB and transparency so far."""
     # What both halves of a part give together is kept if the part itself gives the same, else they are parts.
     # Rows of the stack are parts as `_quadrature` has them; the last two are the halves of the uppermost.
@@ -110,7 +111,7 @@ def _integrate(
 
 
 @kernel
-def _constant(piece: Any, value: float, length: float, cap: float, light: Any) -> None:
+def _constant(piece: Float64s, value: float, length: float, cap: float, light: Float64s) -> None:
     """The same where the value, or all that depends on it, does not change."""
     share = 0.0
     if piece[1] > piece[0]:
@@ -122,10 +123,9 @@ def _constant(piece: Any, value: float, length: float, cap: float, light: Any) -
 
 
 @kernel
-def _through(
-    memory: Scratch, degree: int, a: float, b: float, length: float, knots: Any, pieces: Any, rule: Any, cap: float,
-    tolerance: float, stack: Any, light: Any,
-) -> None:  # fmt: skip
+def _through(memory: Scratch, degree: int, a: float, b: float, length: float, knots: Float64s, pieces: Float64s,
+             rule: tuple[Float64s, ...], cap: float, tolerance: float, stack: Float64s,
+             light: Float64s) -> None:  # fmt: skip
     """Add the light of a stretch from ``a`` to ``b``, between which the field is monotone."""
     first = evaluated(memory.polynomial, degree, a, memory.work)[0]
     last = evaluated(memory.polynomial, degree, b, memory.work)[0]
@@ -151,7 +151,7 @@ def _through(
 
 
 @kernel
-def _seen(low: float, high: float, knots: Any, pieces: Any) -> bool:
+def _seen(low: float, high: float, knots: Float64s, pieces: Float64s) -> bool:
     """Whether anything from one value to another has opacity."""
     for j in range(_before(knots, low, False), _before(knots, high, True) + 1):
         if pieces[j, 5] > 0.0 or pieces[j, 9] > 0.0:
@@ -160,10 +160,9 @@ def _seen(low: float, high: float, knots: Any, pieces: Any) -> bool:
 
 
 @kernel
-def _integral(
-    field: Any, how: int, origin: Any, direction: Any, near: float, far: float, knots: Any, pieces: Any, unit: float,
-    rule: Any, cap: float, tolerance: float, memory: Scratch, stack: Any, light: Any,
-) -> None:  # fmt: skip
+def _integral(field: Float32s, how: int, origin: Float64s, direction: Float64s, near: float, far: float,
+              knots: Float64s, pieces: Float64s, unit: float, rule: tuple[Float64s, ...], cap: float, tolerance: float,
+              memory: Scratch, stack: Float64s, light: Float64s) -> None:  # fmt: skip
     """Add the light of a ray's cells until it ends, or the rest changes nothing any more."""
     t = near
     enter(field, how, origin, direction, t, memory.cell)
@@ -188,10 +187,9 @@ def _integral(
 
 
 @kernel
-def integrals(
-    field: Any, how: int, origins: Any, directions: Any, near: Any, far: Any, knots: Any, pieces: Any, unit: float,
-    nodes: Any, weights: Any, sums: Any, cap: float, tolerance: float, light: Any,
-) -> None:  # fmt: skip
+def integrals(field: Float32s, how: int, origins: Float64s, directions: Float64s, near: Float64s, far: Float64s,
+              knots: Float64s, pieces: Float64s, unit: float, nodes: Float64s, weights: Float64s, sums: Float64s,
+              cap: float, tolerance: float, light: Float64s) -> None:  # fmt: skip
     """Light that comes along rays."""
     for i in range(len(light)):
         if near[i] < far[i]:

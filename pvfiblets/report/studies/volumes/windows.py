@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from ...study import Options
 from ...timing import Comparison
 from ...window import Window
 from .scene import Look, circle, look_of, truth
+
+if TYPE_CHECKING:
+    import pyvista as pv
 
 STEPS, QUICK_STEPS = (2.0, 1.0, 0.5, 0.25, 0.125, 0.0625), (1.0, 0.5)  # voxels; 0.5 is the default
 SIDES, QUICK_SIDES = (64, 256), (48,)  # voxels along each side
@@ -150,7 +153,7 @@ def _drawing(window: CastWindow | VTKWindow, step: float, cameras: list[Camera])
     return draw
 
 
-def _added(plotter: Any, volume: RaycastVolume, look: Look) -> Any:
+def _added(plotter: pv.BasePlotter, volume: RaycastVolume, look: Look) -> Any:
     """Add a volume as the study looks at it; refuse to show another transfer function than it asks for."""
     from matplotlib.colors import ListedColormap
 

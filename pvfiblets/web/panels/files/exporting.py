@@ -26,7 +26,12 @@ from pvfiblets.web.server.options import MEBIBYTE
 from pvfiblets.web.session.document import LINES
 
 if TYPE_CHECKING:
+    from aiohttp import web
+
+    from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.web.app import Explorer
     from pvfiblets.web.scene.files.loading import Cancel, Progress
+    from pvfiblets.web.session.document import Layer
 
 PLACES = ("folder", "computer")
 KEPT = 4  # downloadable files; older ones are dropped, temporary ones removed
@@ -61,7 +66,7 @@ class _Held:
 class ExportActions(Actions):
     """The exports of an application."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._files: OrderedDict[str, _File] = OrderedDict()
         self._folder: tempfile.TemporaryDirectory[str] | None = None
@@ -87,7 +92,7 @@ class ExportActions(Actions):
         stem = re.sub(r"[^\w-]+", "_", name).strip("_")[:80] or "bundle"
         self._begin(layer, app.scene.actor(layer_id).fiblets, ids, stem, suffix)
 
-    def _begin(self, layer: Any, fiblets: Any, ids: Any, stem: str, suffix: str) -> None:
+    def _begin(self, layer: Layer, fiblets: FibletSet, ids: Any, stem: str, suffix: str) -> None:
         app, to = self._app, self._app.page.export_to
         points = fiblets.n_points * len(ids) // max(fiblets.n_streamlines, 1)
         if to == "computer" and suffix != ".fiblets" and points * BYTES_PER_POINT > LARGEST:
@@ -96,7 +101,7 @@ class ExportActions(Actions):
         held = _Held(fiblets, ids, original, why)
         app.later(self._write(held, stem, suffix, temporary=to == "computer"))
 
-    def _stem(self, layer: Any, what: str, suffix: str) -> str:
+    def _stem(self, layer: Layer, what: str, suffix: str) -> str:
         """Return what a file is called, without its suffix: as the page says, or else after the layer."""
         given = self._app.page.export_name.strip()
         ending = next((one for one in EXPORTS if given.lower().endswith(one)), "")
@@ -143,7 +148,7 @@ class ExportActions(Actions):
         points = held.told(done["error_mm"])
         app.say(f"{done['streamlines']:,} streamlines {where} as {name} ({size}); {points}{lost}", "success")
 
-    def _owner(self, what: str) -> Any:
+    def _owner(self, what: str) -> Layer:
         """The layer that is exported: the chosen one, or of selections the first that has one."""
         scene, chosen = self._app.scene, self._app.page.chosen
         if what == "selected":
@@ -190,7 +195,7 @@ class ExportActions(Actions):
             if old.temporary:
                 old.path.unlink(missing_ok=True)
 
-    async def send(self, request: Any) -> Any:
+    async def send(self, request: web.Request) -> web.FileResponse:
         """Answer a browser that fetches a file."""
         from aiohttp import web
 

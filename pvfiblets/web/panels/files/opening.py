@@ -20,7 +20,10 @@ from pvfiblets.web.server.rpc_allowlist import EXPECTED, sentence
 from pvfiblets.web.session.document import LINES
 
 if TYPE_CHECKING:
+    from aiohttp import web
+
     from pvfiblets.support.vtk_space import Space
+    from pvfiblets.web.app import Explorer
     from pvfiblets.web.session.document import Source
 
 PIECE = MEBIBYTE  # bytes of an upload at a time
@@ -39,7 +42,7 @@ MOST_MARKED = 64  # files that are chosen at once
 class FileActions(SessionActions):
     """The files of an application."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._for = ""  # what the file that is chosen next is for, of PURPOSES
 
@@ -210,7 +213,7 @@ class FileActions(SessionActions):
             except EXPECTED as error:  # the others are opened all the same
                 self._app.complain(sentence(error))
 
-    async def receive(self, request: Any) -> Any:
+    async def receive(self, request: web.Request) -> web.Response:
         """Take an upload into the root, and open it; a file of its name is never replaced."""
         from aiohttp import web
 

@@ -5,12 +5,17 @@ from __future__ import annotations
 import asyncio
 import logging
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.errors import FibletsError
 from pvfiblets.web.background_work import BackgroundWork
 from pvfiblets.web.scene.files.loading import Cancelled
 from pvfiblets.web.session import files as session
+
+if TYPE_CHECKING:
+    from aiohttp import web
+
+    from pvfiblets.web.app import Explorer
 
 logger = logging.getLogger("pvfiblets.web")
 
@@ -23,7 +28,7 @@ LARGEST_KEPT = 64 << 20  # bytes
 class SessionActions(BackgroundWork):
     """The sessions of an application."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._timer: asyncio.TimerHandle | None = None
         self._changed: float | None = None  # when the first change came that is not kept yet
@@ -49,7 +54,7 @@ class SessionActions(BackgroundWork):
         place = self._app.confined.existing(path)
         self.load_session(session.read(place), place.parent)
 
-    async def receive_session(self, request: Any) -> Any:
+    async def receive_session(self, request: web.Request) -> web.Response:
         """Open the session that a browser uploads; the front server has checked its size."""
         from aiohttp import web
 

@@ -11,6 +11,7 @@ from pvfiblets.web.scene.files.loading import Watch
 if TYPE_CHECKING:
     import numpy as np
 
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.web.scene.files.loading import Cancel, Progress
     from pvfiblets.web.scene.files.originals import Original
 
@@ -19,7 +20,7 @@ EXPORTS = (".trk", ".trx", ".tck", ".vtp", ".vtk", ".fiblets")
 
 
 def write(
-    fiblets: Any,
+    fiblets: FibletSet,
     ids: np.ndarray,
     target: Path,
     progress: Progress | None = None,

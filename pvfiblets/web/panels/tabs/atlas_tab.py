@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,10 @@ from pvfiblets.web.panels.elements import fold, html, v3
 from pvfiblets.web.panels.tabs.filter_regions import condition, flat
 from pvfiblets.web.session.document import LINES, free_name
 
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
+    from pvfiblets.web.session.document import Layer
+
 HOWS = {"passes": "pass", "ends_in": "end in"}
 MOST_ROWS = 2000
 SHOWN = 40  # rows of the list at once
@@ -25,7 +29,7 @@ MOST_ASKED = 2
 class AtlasActions(Actions):
     """The page's actions on labels of a scene's images."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._image = ""
         self._how = "passes"
@@ -60,7 +64,7 @@ class AtlasActions(Actions):
             raise ValueError("no image is shown as labels; open one as slices and set Numbers are to labels")
         return next((one for one in images if one.id == self._image), images[-1])
 
-    def _rows(self, layer: Any) -> list[dict[str, Any]]:
+    def _rows(self, layer: Layer) -> list[dict[str, Any]]:
         data = self._app.scene.data(layer).data
         if self._listed[0] is not data:
             labels = np.unique(data.values[..., 0])
@@ -74,7 +78,7 @@ class AtlasActions(Actions):
             self._listed = data, found
         return self._listed[1]
 
-    def _lines(self) -> Any:
+    def _lines(self) -> Layer:
         """The chosen tractogram, or the first."""
         scene, chosen = self._app.scene, self._app.page.chosen
         lines = [layer for layer in scene.layers if layer.kind in LINES]
@@ -202,7 +206,7 @@ def over() -> None:
 FOUND = "atlas.rows.filter((r) => (r.name + ' ' + r.label).toLowerCase().includes(atlas_search.trim().toLowerCase()))"
 
 
-def build(app: Any) -> None:
+def build(app: Explorer) -> None:
     """Build the part of the tab Slices."""
     atlas = app.atlas
     fold("Labels of {{ atlas.name }}", "atlas_open", v_if="atlas.images.length", data_action="atlas")

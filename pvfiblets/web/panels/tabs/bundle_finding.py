@@ -19,7 +19,10 @@ from pvfiblets.web.session.document import Ids
 from pvfiblets.web.values import number
 
 if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.web.app import Explorer
     from pvfiblets.web.scene.files.loading import Files
+    from pvfiblets.web.session.document import Layer
 
 __all__ = ["FindingActions", "build"]
 
@@ -30,7 +33,7 @@ COMPARED = 1000  # streamlines that all others are compared with; of more, an ev
 class FindingActions(LineActions):
     """The page's actions that find streamlines of the chosen tractogram."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._open = False
         self._folders: list[str] | None = None
@@ -56,7 +59,7 @@ class FindingActions(LineActions):
         layer, distance = self._layer, _length(text, "distance")
         self._app.later(self._similar(layer, self._like(layer), distance))
 
-    def _like(self, layer: Any) -> np.ndarray:
+    def _like(self, layer: Layer) -> np.ndarray:
         """Return the query's streamlines; a result is queried by its own query."""
         if layer.selected is not None:
             if self._asked is not None and self._asked[:2] == (layer.id, layer.selected):
@@ -67,7 +70,7 @@ class FindingActions(LineActions):
             raise ValueError("pick a streamline, or choose a bundle by its box, to find more like it")
         return np.asarray(chosen)
 
-    async def _similar(self, layer: Any, like: np.ndarray, distance: float) -> None:
+    async def _similar(self, layer: Layer, like: np.ndarray, distance: float) -> None:
         app, fiblets = self._app, self._app.scene.actor(layer.id).fiblets
         some = like if len(like) <= COMPARED else like[np.linspace(0, len(like) - 1, COMPARED).astype(np.int64)]
         found = await self._found(
@@ -87,7 +90,7 @@ class FindingActions(LineActions):
         """Add a bundle for each cluster of streamlines that run alike, as near to each other as was typed."""
         self._app.later(self._cluster(self._layer, _length(text, "distance")))
 
-    async def _cluster(self, layer: Any, threshold: float) -> None:
+    async def _cluster(self, layer: Layer, threshold: float) -> None:
         app, fiblets = self._app, self._app.scene.actor(layer.id).fiblets
         found = await self._found(
             layer, fiblets, lambda watch: fiblets.clusters(threshold=threshold, progress=watch), "clustering"
@@ -113,7 +116,7 @@ class FindingActions(LineActions):
             raise ValueError(f"{str(folder)[:80]!r} has no tractograms; choose a folder with one for each bundle")
         self._app.later(self._recognise(self._layer, models))
 
-    async def _recognise(self, layer: Any, models: dict[str, str]) -> None:
+    async def _recognise(self, layer: Layer, models: dict[str, str]) -> None:
         app, fiblets = self._app, self._app.scene.actor(layer.id).fiblets
 
         def work(watch: Watch) -> Any:
@@ -131,7 +134,7 @@ class FindingActions(LineActions):
 
     # Inside
 
-    async def _found(self, layer: Any, fiblets: Any, work: Callable[[Watch], Any], what: str) -> Any:
+    async def _found(self, layer: Layer, fiblets: FibletSet, work: Callable[[Watch], Any], what: str) -> Any:
         return await self._beside(layer, fiblets, work, what, cancelled="; all is as it was", again="ask")
 
 
@@ -162,13 +165,13 @@ def _is_lines(entry: Any) -> bool:
 
 
 def _length(text: str, name: str) -> float:
-    return number(typed(str(text), name, optional=False), name, 0.1, 1000.0, unit=" of mm")
+    return number(typed(str(text), name), name, 0.1, 1000.0, unit=" of mm")
 
 
 # The page -------------------------------------------------------------------------------------------
 
 
-def build(app: Any) -> None:
+def build(app: Explorer) -> None:
     """Build the section of the tab Bundles that finds streamlines."""
     finding = app.finding
     fold("Find", "finding.open", size="small", click=(finding.fold, "[!finding.open]"), data_action="find")

@@ -19,8 +19,10 @@ from pvfiblets.web.scene.files.loading import Watch
 from pvfiblets.web.session.document import LINES
 
 if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.query.measures.table import Table
-    from pvfiblets.web.session.document import Bundle
+    from pvfiblets.web.app import Explorer
+    from pvfiblets.web.session.document import Bundle, Layer
 
 FORMATS = ("csv", "tsv", "parquet")  # of the tables that are fetched
 PROFILED = 24  # bundles in one chart
@@ -43,7 +45,7 @@ class _Result:
 class MeasureActions(LineActions):
     """The page's measures of the bundles of the chosen tractogram."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._open = False
         self._value = ""
@@ -157,7 +159,7 @@ class MeasureActions(LineActions):
             raise ValueError("no bundle with streamlines is chosen or shown; make one, or choose it by its box")
         return found
 
-    async def _measure(self, kind: str, layer: Any, fiblets: Any, work: Callable[[Watch], _Result]) -> None:
+    async def _measure(self, kind: str, layer: Layer, fiblets: FibletSet, work: Callable[[Watch], _Result]) -> None:
         try:
             found = await self._beside(layer, fiblets, work, "measuring", cancelled="", again="measure")
         except KeyError as error:
@@ -225,7 +227,7 @@ def _cell(value: Any) -> str:
 # The page -------------------------------------------------------------------------------------------
 
 
-def build(app: Any) -> None:
+def build(app: Explorer) -> None:
     """Build the section of the tab Bundles that measures."""
     measuring = app.measuring
     fold("Measure", "measures.open", size="small", click=(measuring.fold, "[!measures.open]"),

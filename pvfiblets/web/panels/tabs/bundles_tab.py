@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from pvfiblets.web.panels.files.writing import EXPORTS
 from pvfiblets.web.panels.tabs import bundle_finding, bundle_measures
 from pvfiblets.web.session.document import LINES
 
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
+
 LISTED = 300  # rows of the list; more are counted, and found by their names
 
 MANY = 20  # bundles beyond which one looks for them by name
@@ -21,7 +24,7 @@ MANY = 20  # bundles beyond which one looks for them by name
 class BundleActions(LineActions):
     """The page's actions on bundles of the chosen tractogram."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._checked: list[str] = []
         self._sought = ""
@@ -155,7 +158,7 @@ class BundleActions(LineActions):
         self._app.exports.export_ids(layer.id, self.chosen_ids(), suffix, self._checked[0])
 
 
-def build(app: Any) -> None:
+def build(app: Explorer) -> None:
     """Build the tab."""
     bundles = app.bundles
     html.Div("Choose a tractogram on the left to see its bundles.", v_if="!bundles.layer", classes="pv-small pa-3")

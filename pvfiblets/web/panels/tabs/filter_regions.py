@@ -6,7 +6,7 @@ A region has a name; layers with a region of the same name share it: a change to
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.images.files import SUFFIXES as LABELS
 from pvfiblets.web.actions import LineActions
@@ -20,6 +20,9 @@ from pvfiblets.web.session.shapes import HOWS, SAMPLED
 from pvfiblets.web.values import text
 from pvfiblets.web.view.region_marks import Sight, dragged, mark
 
+if TYPE_CHECKING:
+    from pvfiblets.web.session.document import Layer
+
 Row = dict[str, Any]
 PLACED = ("sphere", "box")
 
@@ -29,7 +32,7 @@ class RegionActions(LineActions):
 
     # What is shown
 
-    def described(self, layer: Any) -> dict[str, Any]:
+    def described(self, layer: Layer) -> dict[str, Any]:
         """Return a layer's regions for the panel."""
         try:
             join, rows = flat(layer.filters.regions)
@@ -108,7 +111,7 @@ class RegionActions(LineActions):
     def set_labels(self, row: int, text: str) -> None:
         """Choose the labels of a region by their numbers, between commas; none chosen are all but 0."""
         parts = [part for part in str(text).replace(";", ",").replace(" ", ",").split(",") if part]
-        labels = [typed(part, "labels", optional=False) for part in parts] or None
+        labels = [typed(part, "labels") for part in parts] or None
 
         def change(region: Row) -> Row:
             if region["kind"] != "labels":
@@ -208,7 +211,7 @@ class RegionActions(LineActions):
         else:
             self._edit(lambda rows: rows[row].update({"region": new}))
 
-    def _edit(self, change: Callable[[list[Row]], Any], layer: Any = None) -> None:
+    def _edit(self, change: Callable[[list[Row]], Any], layer: Layer | None = None) -> None:
         layer = self._layer if layer is None else self._app.scene.layer(layer.id)
         join, rows = flat(layer.filters.regions)
         change(rows)

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pvfiblets.web.actions import LineActions
 from pvfiblets.web.panels.charts import short, steps
-from pvfiblets.web.panels.describe import Charts, typed
+from pvfiblets.web.panels.describe import Charts, typed, typed_or_none
 from pvfiblets.web.session.document import LINES, Layer, Source, volume_in
+
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
 
 
 class FilterActions(LineActions):
     """The filters of the chosen layer of an application's scene."""
 
-    def __init__(self, app: Any, charts: Charts) -> None:
+    def __init__(self, app: Explorer, charts: Charts) -> None:
         super().__init__(app)
         self._charts = charts  # of the scene's values
 
@@ -63,7 +66,7 @@ class FilterActions(LineActions):
         named = [(title, volume_in(choice)) for choice, title in self._app.scene.volume_choices(layer)]
         return {title: source for title, source in named if source is not None}
 
-    def _criterion(self, layer: Any, name: str, title: str) -> dict[str, Any]:
+    def _criterion(self, layer: Layer, name: str, title: str) -> dict[str, Any]:
         chart, limits = self._charts.chart_of(layer.id, name)
         low, high = layer.filters.criteria[name]
         value = [limits[0] if math.isinf(low) else low, limits[1] if math.isinf(high) else high]
@@ -99,14 +102,14 @@ class FilterActions(LineActions):
         """Set the range of a criterion."""
         if not isinstance(ends, list) or len(ends) != 2:
             raise ValueError(f"{name}: expected two numbers")
-        low, high = (typed(end, name, optional=False) for end in ends)
+        low, high = (typed(end, name) for end in ends)
         self._app.scene.filters.set_filter(self._layer.id, name, low, high)
 
     def set_end(self, name: str, end: int, text: str) -> None:
         """Set one end of a range to a number that was typed; nothing typed leaves it open."""
         layer = self._layer
         ends: list[float | None] = list(layer.filters.criteria[name])
-        ends[1 if end else 0] = typed(text, name, optional=True)
+        ends[1 if end else 0] = typed_or_none(text, name)
         low, high = (None if value is None or math.isinf(value) else value for value in ends)
         self._app.scene.filters.set_filter(layer.id, name, low, high)
 
@@ -116,5 +119,5 @@ class FilterActions(LineActions):
 
     def set_share(self, share: float) -> None:
         """Show a random share of the streamlines, in per cent."""
-        value = typed(str(share), "share", optional=False)
+        value = typed(str(share), "share")
         self._app.scene.filters.set_subset(self._layer.id, None if value is None or value >= 100 else value / 100.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,11 @@ from pvfiblets.web.scene.files.confined import check_name
 from pvfiblets.web.scene.slices.painted import TOOLS
 from pvfiblets.web.session.document import LINES
 from pvfiblets.web.session.painting import USES
+
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
+    from pvfiblets.web.session.document import Layer
+    from pvfiblets.web.session.painting import Painting
 
 PAINTING = f"{list(TOOLS)}.includes(tool)"  # whether a tool that paints is in hand, for the page
 
@@ -35,7 +40,7 @@ AT_ONCE = ("fill", "outline", "sphere", "grow")  # tools that need one list of p
 class PaintActions(Actions):
     """The page's actions on painted regions."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._numbers = itertools.count(1)
         self._gesture = ""
@@ -73,13 +78,13 @@ class PaintActions(Actions):
         return f"{self._app.scene.canvas.live(fiblets).count(region.name):,}"
 
     def _counted(self) -> str:
-        fiblets = self._fiblets()
-        if fiblets is None:
+        layer, fiblets = self._of(), self._fiblets()
+        if layer is None or fiblets is None:
             return ""
-        shown = int(np.count_nonzero(self._app.scene.actor(self._of().id).shown))
+        shown = int(np.count_nonzero(self._app.scene.actor(layer.id).shown))
         return f"{shown:,} of {fiblets.n_streamlines:,} streamlines are shown"
 
-    def _of(self) -> Any:
+    def _of(self) -> Layer | None:
         """The chosen tractogram, or the first."""
         scene, chosen = self._app.scene, self._app.page.chosen
         lines = [layer for layer in scene.layers if layer.kind in LINES]
@@ -144,7 +149,7 @@ class PaintActions(Actions):
         app.say(f"Saved as {name}; label names are in {stem}.tsv.", "success")
 
     @property
-    def _painting(self) -> Any:
+    def _painting(self) -> Painting:
         found = self._app.scene.state.painting
         if found is None:
             raise ValueError("there are no painted regions; add one first")
@@ -210,14 +215,14 @@ class PaintActions(Actions):
 
     def set_share(self, text: Any) -> None:
         """Set how far growing goes, in per cent of the image's window, as it was typed or slid."""
-        value = typed(str(text), "range", optional=False)
+        value = typed(str(text), "range")
         if value is None or not 0.0 <= value <= 100.0:
             raise ValueError(f"range is {value}; give 0 to 100 per cent of the image's window")
         self._app.page.grow_share = value
 
     def set_brush(self, text: Any) -> None:
         """Set the brush's radius, mm, as it was typed or slid."""
-        value = typed(str(text), "radius", optional=False)
+        value = typed(str(text), "radius")
         if value is None or not 0.1 <= value <= 50.0:
             raise ValueError(f"radius is {value}; give 0.1 to 50 mm")
         self._app.page.brush = value
@@ -226,7 +231,7 @@ class PaintActions(Actions):
 # The page -------------------------------------------------------------------------------------------
 
 
-def over(app: Any) -> None:
+def over(app: Explorer) -> None:
     """Build what catches the pointer while a tool that paints is in hand: see client/painting.js."""
     _at_hand(app)
     html.Div(
@@ -237,7 +242,7 @@ def over(app: Any) -> None:
     )  # fmt: skip
 
 
-def _at_hand(app: Any) -> None:
+def _at_hand(app: Explorer) -> None:
     """Build the tools over the picture, for when the panel that has them is closed."""
     del app
     with html.Div(
@@ -259,7 +264,7 @@ def _at_hand(app: Any) -> None:
                     data_slice_step=str(step))  # fmt: skip
 
 
-def build(app: Any) -> None:
+def build(app: Explorer) -> None:
     """Build the part of the tab Slices."""
     paint = app.painting
     with html.Div(classes="pv-pair pr-2"):

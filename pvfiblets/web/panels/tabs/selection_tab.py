@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.colours.scalars import UNITS
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.panels.charts import profile_chart, short
 from pvfiblets.web.panels.csv_tables import profile_csv
 from pvfiblets.web.server.rpc_allowlist import number
+
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
+    from pvfiblets.web.session.document import Layer
 
 ROWS = 200
 CLICK = 3.0  # pixels: a shorter drag is a click
@@ -17,7 +21,7 @@ CLICK = 3.0  # pixels: a shorter drag is a click
 class SelectionActions(Actions):
     """Picking and the selection of an application's scene."""
 
-    def __init__(self, app: Any) -> None:
+    def __init__(self, app: Explorer) -> None:
         super().__init__(app)
         self._profile: str | None = None
         self._begin: list[float] | None = None  # the first of two clicks of the tool that measures, mm
@@ -136,7 +140,7 @@ class SelectionActions(Actions):
         }
         self._shown = shown
 
-    def _owner(self) -> Any:
+    def _owner(self) -> Layer:
         """The layer whose selection is profiled: the chosen one, or the first that has one."""
         scene = self._app.scene
         having = [layer for layer in scene.layers if layer.selected is not None]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,10 @@ from pvfiblets.web.panels.tabs import atlas_tab, painting_tab
 from pvfiblets.web.scene.slices.glyph_layers import covers
 from pvfiblets.web.scene.slices.slicing import LAYOUTS, NAMES
 from pvfiblets.web.server.rpc_allowlist import number
+
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
+    from pvfiblets.web.session.document import Layer
 
 __all__ = ["SliceActions", "build", "layout_menu", "over"]
 
@@ -101,7 +105,7 @@ class SliceActions(Actions):
         """Show the image of a volume as slices, and hide the volume."""
         self._app.later(self._of_volume(self._app.scene.layer(layer_id)))
 
-    async def _of_volume(self, layer: Any) -> None:
+    async def _of_volume(self, layer: Layer) -> None:
         app = self._app
         if layer.kind != "volume":
             raise ValueError(f"{layer.name!r} is of kind {layer.kind}; slices are of volumes")
@@ -140,7 +144,7 @@ class SliceActions(Actions):
     def set_angle(self, which: int, text: Any) -> None:
         """Tilt or turn the oblique slice, by degrees as they were typed or slid."""
         angles = list(self._app.scene.slicing.view.oblique or TILTED)
-        angles[1 if which == 1 else 0] = typed(str(text), "angle", optional=False)
+        angles[1 if which == 1 else 0] = typed(str(text), "angle")
         self._set(oblique=angles)
 
     def set_switch(self, name: str, on: bool) -> None:
@@ -154,12 +158,12 @@ class SliceActions(Actions):
 
     def set_thickness(self, text: str) -> None:
         """Set how thick the slabs are whose streamlines are shown, as it was typed."""
-        self._set(thickness=typed(text, "thickness", optional=False))
+        self._set(thickness=typed(text, "thickness"))
 
     def set_part(self, kind: str, axis: int, text: str) -> None:
         """Set one of three numbers of the position, as it was typed, in mm or in voxels."""
         workspace = self._workspace
-        value = typed(text, "position", optional=False)
+        value = typed(text, "position")
         if axis not in (0, 1, 2):
             raise ValueError(f"a position has no part {axis!r}")
         if kind == "voxel":
@@ -234,7 +238,7 @@ def _told(value: Any) -> str:
 # The page -------------------------------------------------------------------------------------------
 
 
-def layout_menu(app: Any) -> None:
+def layout_menu(app: Explorer) -> None:
     """Build the button that chooses a layout."""
     with v3.VBtn(
         icon=True, size="small", density="comfortable", variant="text", aria_label="Slices and views",
@@ -267,7 +271,7 @@ def over() -> None:
         )  # fmt: skip
 
 
-def build(app: Any) -> None:
+def build(app: Explorer) -> None:
     """Build the tab."""
     slices = app.slices
     with html.Div(v_if="!slicing.shown"):
@@ -327,7 +331,7 @@ def build(app: Any) -> None:
         _panes(app)
 
 
-def _panes(app: Any) -> None:
+def _panes(app: Explorer) -> None:
     """Build how panes are looked at, folded."""
     slices = app.slices
     fold("Panes", "panes_open", data_action="panes")

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.web.panels import elements as ui
 from pvfiblets.web.panels.controls import NAMES
 from pvfiblets.web.panels.elements import eye, fold, html, v3
 from pvfiblets.web.panels.files.writing import EXPORTS
 from pvfiblets.web.panels.tabs import bundles_tab, slices_tab
+
+if TYPE_CHECKING:
+    from pvfiblets.web.app import Explorer
 
 TABS = (
     ("clip", "Clip", "mdi-content-cut"), ("filter", "Filter", "mdi-filter-outline"),
@@ -21,7 +24,7 @@ WHAT = (("selected", "selected streamlines"), ("shown", "visible streamlines"), 
 WHERE = (("folder", "the served folder"), ("computer", "this computer"))
 
 
-def build(app: Any) -> None:
+def build(app: Explorer) -> None:
     """Build the tabs."""
     with html.Div(style="display: flex; flex-direction: column; height: 100%"):
         with v3.VTabs(v_model=("tab", "clip"), density="compact", grow=True, style="flex: none", show_arrows=False):
@@ -73,7 +76,7 @@ def _slider_rows(change: Any, typed: Any, kind: str, owner: str, rows: str) -> N
                 html.Span("mm", classes="pv-small")
 
 
-def _clip(app: Any) -> None:
+def _clip(app: Explorer) -> None:
     with html.Div(classes="pa-2", style="display: flex; flex-wrap: wrap; gap: 6px"):
         for kind, title in CUTS:
             ui.button(title, size="small", click=(app.cuts.add, f"['{kind}']"), prepend_icon="mdi-plus", data_cut=kind)
@@ -113,7 +116,7 @@ def _clip(app: Any) -> None:
         v3.VDivider(classes="mt-2")
 
 
-def _filter(app: Any) -> None:
+def _filter(app: Explorer) -> None:
     html.Div(
         "Choose a tractogram on the left to filter its streamlines.", v_if="!filters.layer", classes="pv-small pa-3"
     )
@@ -164,7 +167,7 @@ def _filter(app: Any) -> None:
         _regions(app)
 
 
-def _regions(app: Any) -> None:
+def _regions(app: Explorer) -> None:
     regions = app.regions
     with html.Div(classes="pv-pair pr-2"):
         html.Div("Regions", classes="pv-head", style="flex: 1")
@@ -236,7 +239,7 @@ def _regions(app: Any) -> None:
         v3.VDivider(classes="mt-2")
 
 
-def _selection(app: Any) -> None:
+def _selection(app: Explorer) -> None:
     html.Div(
         "Take the pick, box or lasso tool beside the picture, or press P, B or L, and point at streamlines. "
         "With Shift they are added.",
@@ -276,7 +279,7 @@ def _selection(app: Any) -> None:
     _export(app)
 
 
-def _export(app: Any) -> None:
+def _export(app: Explorer) -> None:
     with html.Div(v_if="chosen_kind === 'tractogram' || chosen_kind === 'selection' || selection.count", id="export"):
         html.Div("Export", classes="pv-head")
         for label, key, items in (("Streamlines", "export_what", WHAT), ("To", "export_to", WHERE)):

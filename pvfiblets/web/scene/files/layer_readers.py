@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets import formats
 from pvfiblets.formats.registry import UnknownFormatError
 from pvfiblets.web.scene.files.file_kinds import MESHES, VOLUMES, VTK_SUFFIXES, read_vtk
+
+if TYPE_CHECKING:
+    from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 
 LARGEST_AS_TUBES = 5_000_000  # points
 
@@ -62,7 +65,7 @@ def read_mesh(place: Path) -> Any:
     return data
 
 
-def read_colours(place: Path) -> Any:
+def read_colours(place: Path) -> VolumeSource | None:
     """Return a volume to be sampled along lines, from the same numbers as a script's ``scalars=path`` gives."""
     from pvfiblets.images.sources import as_image
     from pvfiblets.plotting.fiblets.sources import as_volume

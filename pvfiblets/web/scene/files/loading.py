@@ -11,7 +11,7 @@ import tempfile
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets import formats
 from pvfiblets.codec.shards.manifest import MANIFEST
@@ -41,6 +41,9 @@ from pvfiblets.web.scene.files.layer_readers import (
 )
 from pvfiblets.web.session.document import LINES, Source
 from pvfiblets.web.values import shown
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
 
 MOST_REMEMBERED = 16  # exports whose points are not coded again
 
@@ -116,13 +119,13 @@ class Files:
         found = place.stat()
         return found.st_mtime_ns, found.st_size
 
-    def remember(self, place: Path, fiblets: Any) -> None:
+    def remember(self, place: Path, fiblets: FibletSet) -> None:
         """Take fiblets for a file that holds their points, so that opening it does not code those again."""
         self._coded[place] = self.stamp(place), fiblets
         while len(self._coded) > MOST_REMEMBERED:
             self._coded.pop(next(iter(self._coded)))
 
-    def spooled(self, save: Callable[[Path], Any]) -> Any:
+    def spooled(self, save: Callable[[Path], Any]) -> FibletSet:
         """Return the fiblets of a temporary file, which is removed when unused."""
         from pvfiblets.codec.fibletset import FibletSet
 

@@ -14,6 +14,7 @@ from pvfiblets.slices.labels import LabelTable
 from pvfiblets.web.session.painting import USES, Painting, Strokes, path_between
 
 if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.web.scene.slices.slicing import Slicing
     from pvfiblets.web.session.document import Layer
 
@@ -133,7 +134,7 @@ class Canvas:
         there = np.bincount(self.painter.labels.reshape(-1), minlength=1 + max(one.label for one in used)) > 0
         return tuple((one.name, one.use) for one in used if there[one.label])
 
-    def _mask(self, fiblets: Any, used: tuple[tuple[str, str], ...]) -> np.ndarray:
+    def _mask(self, fiblets: FibletSet, used: tuple[tuple[str, str], ...]) -> np.ndarray:
         live = self.live(fiblets)
         by = {use: [name for name, its in used if its == use] for use in USES}
         mask = live.select(
@@ -143,7 +144,7 @@ class Canvas:
             mask &= live.select(stays_in=name)
         return mask
 
-    def live(self, fiblets: Any) -> LiveRegions:
+    def live(self, fiblets: FibletSet) -> LiveRegions:
         """Return the state of a set's streamlines and the regions."""
         assert self.painter is not None
         if id(fiblets) not in self._live:

@@ -21,6 +21,8 @@ from pvfiblets.web.session.document import Layer, volume_in
 from pvfiblets.web.values import mapping, number, numbers, shown, truth
 
 if TYPE_CHECKING:
+    import pyvista as pv
+
     from pvfiblets.web.scene.actors import Colours
     from pvfiblets.web.scene.slices.label_images import LabelledImage
 
@@ -114,12 +116,12 @@ def angles_of(normal: Any) -> tuple[float, float]:
     return round(tilt, 2), round(turn, 2)
 
 
-def to_3d_view(plotter: Any) -> None:
+def to_3d_view(plotter: pv.BasePlotter) -> None:
     """Make the 3-D view the active one."""
     plotter.renderers.set_active_renderer(*plotter.renderers.index_to_loc(_THREE_D))
 
 
-def ready_views(plotter: Any) -> None:
+def ready_views(plotter: pv.BasePlotter) -> None:
     """Start a plotter of all views with the 3-D view alone, which is the active one."""
     for name, renderer in zip(NAMES, plotter.renderers, strict=False):
         renderer.SetDraw(name == "3d")
@@ -134,7 +136,7 @@ class Slicing:
     """The images of a scene, as slices in its plotter."""
 
     def __init__(
-        self, plotter: Any, turned: Callable[[tuple[float, float], int | None], Any] = lambda *_: None
+        self, plotter: pv.BasePlotter, turned: Callable[[tuple[float, float], int | None], Any] = lambda *_: None
     ) -> None:
         # called with the angles of the oblique slice when it was turned by hand, and which drag of a handle does it,
         # None for none

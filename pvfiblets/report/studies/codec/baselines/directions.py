@@ -29,6 +29,7 @@ import numpy.typing as npt
 
 from pvfiblets.codec.jit import kernel
 
+from .....support.array_types import Float64s, Floats, Int64s, UInt16s
 from ..errors import median_step
 from . import COUNT_BYTES
 from .octahedral import from_cap, pack, ratio_of, to_cap, unpack
@@ -122,7 +123,7 @@ def widest_turn(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]
 
 
 @kernel
-def _widest(points: Any, offsets: Any) -> float:
+def _widest(points: Floats, offsets: Int64s) -> float:
     widest = 0.0
     for s in range(len(offsets) - 1):
         for i in range(offsets[s] + 2, offsets[s + 1]):
@@ -139,7 +140,7 @@ def _widest(points: Any, offsets: Any) -> float:
 
 
 @kernel
-def _basis(x: float, y: float, z: float) -> Any:
+def _basis(x: float, y: float, z: float) -> tuple[float, ...]:
     """Two unit vectors across a unit vector (Duff et al. 2017)."""
     sign = math.copysign(1.0, z)
     a = -1.0 / (sign + z)
@@ -148,7 +149,7 @@ def _basis(x: float, y: float, z: float) -> Any:
 
 
 @kernel
-def _turned(frame: Any, x: float, y: float, z: float) -> Any:
+def _turned(frame: tuple[float, ...], x: float, y: float, z: float) -> tuple[float, float, float]:
     """A vector of the frame ``(forward, left, up)`` in the world's coordinates."""
     return (
         frame[0] * x + frame[3] * y + frame[6] * z,
@@ -158,7 +159,7 @@ def _turned(frame: Any, x: float, y: float, z: float) -> Any:
 
 
 @kernel
-def _around(x: float, y: float, z: float) -> Any:
+def _around(x: float, y: float, z: float) -> tuple[float, ...]:
     """Frame of a forward vector by the constant vector of equation 2: up and left across it."""
     # The constant is (0, 0, 1) turned a little, so that no decoded direction and no axis is along it.
     vx, vy, vz = 0.0871557427, 0.0436193874, 0.9952393
@@ -171,7 +172,9 @@ def _around(x: float, y: float, z: float) -> Any:
 
 
 @kernel
-def _next_frame(frame: Any, local: Any, dx: float, dy: float, dz: float, propagated: bool) -> Any:
+def _next_frame(
+    frame: tuple[float, ...], local: tuple[float, float, float], dx: float, dy: float, dz: float, propagated: bool
+) -> tuple[float, ...]:
     """The frame that the next direction is coded in: built anew, or turned on from the one before."""
     if not propagated:
         ax, ay, az, bx, by, bz = _basis(dx, dy, dz)
@@ -183,7 +186,7 @@ def _next_frame(frame: Any, local: Any, dx: float, dy: float, dz: float, propaga
 
 
 @kernel
-def _first_frame(firsts: Any, s: int, propagated: bool) -> Any:
+def _first_frame(firsts: Float64s, s: int, propagated: bool) -> tuple[float, ...]:
     dx = firsts[s, 1, 0] - firsts[s, 0, 0]
     dy = firsts[s, 1, 1] - firsts[s, 0, 1]
     dz = firsts[s, 1, 2] - firsts[s, 0, 2]
@@ -198,7 +201,9 @@ def _first_frame(firsts: Any, s: int, propagated: bool) -> Any:
 
 
 @kernel
-def encode(points: Any, firsts: Any, starts: Any, how: Any, codes: Any) -> None:
+def encode(
+    points: Floats, firsts: Float64s, starts: Int64s, how: tuple[float, float, int, float, float, bool], codes: UInt16s
+) -> None:
     """Write a code for every point but the first two of each piece; codes stand where points do."""
     step, ratio, levels, spread, limit, propagated = how
     for s in range(len(starts) - 1):
@@ -229,7 +234,7 @@ def encode(points: Any, firsts: Any, starts: Any, how: Any, codes: Any) -> None:
 
 
 @kernel
-def _local(u: int, v: int, how: Any) -> Any:
+def _local(u: int, v: int, how: tuple[float, float, int, float, float, bool]) -> tuple[float, float, float]:
     """Direction that a code means, in the frame before it."""
     ratio, levels, spread, propagated = how[1], how[2], how[3], how[5]
     if propagated:
@@ -244,7 +249,8 @@ def _local(u: int, v: int, how: Any) -> Any:
 
 
 @kernel
-def decode(firsts: Any, codes: Any, starts: Any, how: Any, points: Any) -> None:
+def decode(firsts: Float64s, codes: UInt16s, starts: Int64s, how: tuple[float, float, int, float, float, bool],
+           points: Float64s) -> None:  # fmt: skip
     """Write all points, ``(n, 3)`` float64."""
     step, levels, propagated = how[0], how[2], how[5]
     for s in range(len(starts) - 1):

@@ -15,13 +15,12 @@ sphere, around which codes hold azimuths badly or not at all; vectors near the r
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from pvfiblets.codec.jit import kernel
 
 
 @kernel
-def pack(x: float, y: float, z: float, levels: int) -> Any:
+def pack(x: float, y: float, z: float, levels: int) -> tuple[int, int]:
     """Return the two whole numbers, ``0`` to ``levels - 1``, of a vector that is not 0."""
     norm = abs(x) + abs(y) + abs(z)
     u = y / norm
@@ -35,7 +34,7 @@ def pack(x: float, y: float, z: float, levels: int) -> Any:
 
 
 @kernel
-def unpack(i: int, j: int, levels: int) -> Any:
+def unpack(i: int, j: int, levels: int) -> tuple[float, float, float]:
     """Return the unit vector of two whole numbers."""
     half = 0.5 * (levels - 1)
     u = i / half - 1.0
@@ -55,7 +54,7 @@ def ratio_of(angle: float) -> float:
 
 
 @kernel
-def from_cap(x: float, y: float, z: float, ratio: float, spread: float, limit: float) -> Any:
+def from_cap(x: float, y: float, z: float, ratio: float, spread: float, limit: float) -> tuple[float, float, float]:
     """Stretch the cap around X: unit vector to unit vector, whose ``1 - x`` is ``limit`` at most."""
     lateral = math.sqrt(y * y + z * z)
     if lateral == 0.0:
@@ -67,7 +66,7 @@ def from_cap(x: float, y: float, z: float, ratio: float, spread: float, limit: f
 
 
 @kernel
-def to_cap(x: float, y: float, z: float, ratio: float, spread: float) -> Any:
+def to_cap(x: float, y: float, z: float, ratio: float, spread: float) -> tuple[float, float, float]:
     """Undo :func:`from_cap`, but for its limit."""
     lateral = math.sqrt(y * y + z * z)
     if lateral == 0.0:
