@@ -234,6 +234,11 @@ def _repack(
         prepare(fiblets)
     with naming_target(target):
         fiblets.save(target, small=True)
+    return _written(fiblets, target)
+
+
+def _written(fiblets: FibletSet, target: str | PathLike[str]) -> dict[str, Any]:
+    """Return what a file holds, and its size."""
     size = Path(target).stat().st_size
     return {
         "streamlines": len(fiblets),
@@ -306,25 +311,16 @@ def _keep_exactly(
     if not (np.array_equal(back.decompress().points, whole.points) and np.array_equal(back.offsets(), whole.offsets)):
         raise FormatError(target, None, "other points than were written", "the same: is the disk damaged?")
     none = {"max": 0.0, "mean": 0.0}
-    size = Path(target).stat().st_size
     return {
-        "streamlines": len(whole),
-        "points": whole.n_points,
-        "fiblets": fiblets.n_fiblets,
-        "bytes": size,
-        "bytes_per_point": size / max(whole.n_points, 1),
+        **_written(fiblets, target),
         "error_mm": {**none, "p999": 0.0},
         "error_steps": {**none, "p999": 0.0},
         "error_degrees": {**none, "p99": 0.0},
         "error_values": value_errors(fiblets.per_point),
         "compared_every": 1,
-        "promise_mm": 0.0,
         "seconds": seconds,
         "points_per_second": whole.n_points / seconds,
         "seconds_to_measure": time.perf_counter() - started - seconds,
-        "dropped": fiblets.dropped,
-        "per_point": list(fiblets.per_point),
-        "exact": True,
     }
 
 
