@@ -145,6 +145,11 @@ class ColouredActor(Settings, pv.Actor):
     # Colours ------------------------------------------------------------------------------------
 
     @property
+    def active_scalars(self) -> Scalars | None:
+        """What colours the actor, as found; ``None`` for one colour."""
+        return self._scalars
+
+    @property
     def scalars_title(self) -> str | None:
         """Title of the scalar bar; ``None`` if the present colours need none."""
         return self._scalars.title if self._scalars is not None and self._scalars.mapped else None

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from pvfiblets.mappers.fiblets import FibletMapper
     from pvfiblets.plotting.fiblets.profiles import Profile
     from pvfiblets.plotting.fiblets.selection_overlay import SelectionOverlay
-    from pvfiblets.plotting.scalars import Scalars
     from pvfiblets.query.measures.table import Table
 
 class SelectableActor(BundledActor):
@@ -32,11 +31,6 @@ class SelectableActor(BundledActor):
         """Mappers whose pixels show this actor's streamlines."""
         layers = [Layer(self._mapper)]
         return layers if self._standout is None else [*layers, self._standout.layer]
-
-    @property
-    def active_scalars(self) -> Scalars | None:
-        """What colours the actor, as found; ``None`` for one colour."""
-        return self._scalars
 
     def select(
         self, ids: Any, *, mode: str = "replace", as_tubes: bool = AS_BEFORE, radius: float = AS_BEFORE
