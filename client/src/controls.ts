@@ -11,7 +11,7 @@ import type { Renderer } from "./renderer";
 import type { Bar } from "./scene";
 
 const SVG = "http://www.w3.org/2000/svg";
-const UNREAD = "This browser does not let the page read its own picture, unless you allow it:";
+const UNREAD = "Your browser does not let this page read its image; allow that to";
 
 type Child = Node | string;
 
@@ -162,7 +162,7 @@ export class Controls {
   private save(): void {
     const { renderer } = this;
     void renderer.settled().then(() => {
-      if (!renderer.reads()) return void (this.status.textContent = `${UNREAD} a picture cannot be saved.`);
+      if (!renderer.reads()) return void (this.status.textContent = `${UNREAD} save images.`);
       const canvas = make("canvas", { width: String(renderer.width), height: String(renderer.height) }) as HTMLCanvasElement;
       const context = canvas.getContext("2d")!, pixels = context.createImageData(renderer.width, renderer.height);
       pixels.data.set(renderer.pixels());
@@ -196,7 +196,7 @@ export class Controls {
         at = (low + high) / 2;
         thickness = (high - low) / 8;
         sliders.append(
-          slider("Middle", low, high, at, (value) => {
+          slider("Position", low, high, at, (value) => {
             at = value;
             apply();
           }),
@@ -234,11 +234,11 @@ export class Controls {
         made.push(
           group(
             values.name,
-            slider("From", low, high, low, (value) => {
+            slider("Minimum", low, high, low, (value) => {
               now[0] = value;
               apply();
             }),
-            slider("To", low, high, high, (value) => {
+            slider("Maximum", low, high, high, (value) => {
               now[1] = value;
               apply();
             }),
@@ -252,7 +252,7 @@ export class Controls {
           this.choiceOf(renderer.lines[lines.index]).set(control, numbers, end, value);
           renderer.change(true);
         };
-        made.push(group(control.name, slider("From", low, high, low, changed(0)), slider("To", low, high, high, changed(1))));
+        made.push(group(control.name, slider("Minimum", low, high, low, changed(0)), slider("Maximum", low, high, high, changed(1))));
       }
     }
     return made;
@@ -309,7 +309,7 @@ export class Controls {
         region.on = on;
         this.choose();
       }),
-      check("Streamlines outside it", false, (inverted) => {
+      check("Exclude", false, (inverted) => {
         region.inverted = inverted;
         this.choose();
       }),
@@ -376,7 +376,7 @@ export class Controls {
       this.picked = { lines, streamline, place };
       this.told?.({ layer: renderer.scene.layers.indexOf(lines.layer), streamline, place: world });
     } else this.told?.(null);
-    if (!renderer.reads()) this.status.textContent = `${UNREAD} clicks pick nothing.`;
+    if (!renderer.reads()) this.status.textContent = `${UNREAD} pick streamlines.`;
     renderer.change();
   }
 

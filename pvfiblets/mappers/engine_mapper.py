@@ -40,6 +40,7 @@ from pvfiblets.mappers.frames.scene import (
     pixel_scale,
     renderers_of,
     smoothers,
+    switch_view,
     to_array,
     world_planes,
 )
@@ -316,6 +317,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         context.tell_lost(renderer)
         with context.foreign():
             engine = self._engine(context, slot)
+            switch_view(engine, renderer, actor, view, style)
             if hasattr(engine, "patience"):
                 from pvfiblets.mappers.frames.streaming import pace
 
@@ -404,7 +406,8 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         self, context: WindowContext, slot: Slot, renderer: vtkRenderer, viewport: tuple[int, int, int, int]
     ) -> moderngl.Texture | None:
         """Return the depth of earlier objects, as keys; None if it cannot be read."""
-        actor = self.actor
+        # What else a renderer shows is behind the slab that it is cut to (`Pane`).
+        actor = None if renderer.GetAddressAsString("") in self._cuts_in else self.actor
         if not self._sums_up and actor is not None and others_before(renderer, actor):
             return slot.outside_depth(context.ctx).copy(viewport)
         return None

@@ -15,7 +15,7 @@ from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.effects.shader_effects import ShaderEffect
 from pvfiblets.mappers.engine_mapper import FilteredMapper
 from pvfiblets.mappers.engine_options import EngineOptions, engine_renderer
-from pvfiblets.mappers.frames.scene import Frame, frame_of, slack, smoothers, wanted_share
+from pvfiblets.mappers.frames.scene import Frame, frame_of, slack, smoothers, switch_view, wanted_share
 from pvfiblets.mappers.frames.windows import Slot, WindowContext, contexts_with
 from pvfiblets.mappers.line_data import SIDES
 from pvfiblets.mappers.picking import nearest_pixel
@@ -240,7 +240,9 @@ class FibletMapper(FilteredMapper[EngineOptions]):
                     smoothed = self._has_edges and renderer.GetAddressAsString("") in smoothers
                     frame = frame_of(renderer, actor, (*origin, *size), sample_camera)
                     wanted = self._wanted(renderer, frame, sample_camera is not None if smoothed else None)
-                    steps = self._engine(context, slot).render_in_pieces(*wanted)
+                    engine = self._engine(context, slot)
+                    switch_view(engine, renderer, actor, *wanted)
+                    steps = engine.render_in_pieces(*wanted)
                 if next(steps, _OVER) is _OVER:
                     return
             yield

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray
 
+from pvfiblets.mappers.frames.scene import switch_view
 from pvfiblets.mappers.frames.shifted_cameras import with_exact_depths
 from pvfiblets.mappers.frames.windows import WindowContext, contexts_with
 
@@ -88,7 +89,9 @@ class Shown:
         """Return textures of the G-buffer by their names, as (height, width, components) of a rectangle."""
         self.context.window.MakeCurrent()
         with self.context.foreign():
-            buffer = self.slot.renderer.render(self.drawn.view, self.drawn.style)
+            engine, drawn = self.slot.renderer, (self.drawn.view, self.drawn.style)
+            switch_view(engine, self.renderer, self.slot.mapper.Get().actor, *drawn)
+            buffer = engine.render(*drawn)
             return {name: _texels(self.context.ctx, getattr(buffer, name), area) for name in names}
 
 

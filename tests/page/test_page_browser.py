@@ -237,11 +237,11 @@ def test_page_that_may_not_read_its_picture_shows_it_and_says_why_clicks_tell_no
     assert drawn > 0.1
     assert wrong < 1e-3  # of two lines at the same depth either may be drawn
     page.page.mouse.click(100, 80)
-    said = "This browser does not let the page read its own picture, unless you allow it: clicks pick nothing."
+    said = "Your browser does not let this page read its image; allow that to pick streamlines."
     assert page.page.locator("#status").inner_text() == said
     page.page.click("#panel summary")
     page.page.get_by_role("button", name="Save image").click()
-    until(page.page, "document.getElementById('status').textContent.endsWith('a picture cannot be saved.')")
+    until(page.page, "document.getElementById('status').textContent.endsWith('save images.')")
 
 
 def _ink(page, rows):
@@ -264,9 +264,9 @@ def test_a_click_tells_the_streamline_and_balls_and_boxes_there_choose_with_swit
     assert page.page.locator("#over > svg > path").count() == 1
     assert _ink(page, above) == 0 < _ink(page, middle)
     ball = page.page.locator("details", has=page.page.locator("summary", has_text=re.compile("^Ball 1$"))).last
-    ball.get_by_label("Streamlines outside it").check()
+    ball.get_by_label("Exclude").check()
     assert _ink(page, middle) == 0 < _ink(page, above)
-    ball.get_by_label("Streamlines outside it").uncheck()
+    ball.get_by_label("Exclude").uncheck()
     ball.get_by_label("On").uncheck()
     assert min(_ink(page, middle), _ink(page, above)) > 0
     ball.get_by_label("On").check()
@@ -333,11 +333,11 @@ def test_sliders_choose_by_numbers_and_fade_surfaces(rich, visit):
     page.page.get_by_label("tracts", exact=True).uncheck()
     whole = _ink(page, slice(None))
     lengths = page.page.locator("fieldset", has=page.page.locator("legend", has_text=re.compile("^length"))).last
-    lengths.get_by_label("From").fill("60")
+    lengths.get_by_label("Minimum").fill("60")
     fewer = _ink(page, slice(None))
     assert 0 < fewer < whole
     assert float(lengths.locator("output").first.inner_text()) == pytest.approx(60.0, abs=0.5)
-    lengths.get_by_label("From").fill("0")
+    lengths.get_by_label("Minimum").fill("0")
     assert _ink(page, slice(None)) == whole
     black = (page.picture() < 40).all(axis=2).sum()
     assert black > 500

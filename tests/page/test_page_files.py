@@ -105,11 +105,40 @@ def test_what_a_page_cannot_draw_is_named(fiblets, tmp_path):
     plotter = pv.Plotter(off_screen=True, window_size=(100, 80))
     actor = plotter.add_fiblets(fiblets, name="lines")
     actor.tube_radius = 0.4
-    vessel = pv.Spline([(0, -10, 0), (20, -14, 5), (40, -10, 0)], 9)
-    vessel["radius"] = np.linspace(1.0, 3.0, 9)
-    plotter.add_spline_tubes(vessel, name="vessel")
-    with pytest.warns(UserWarning, match="the page leaves out tubes of 'lines', 'vessel': it cannot draw them"):
+    plotter.add_volume(np.ones((4, 4, 4)), name="scan")
+    with pytest.warns(UserWarning, match="the page leaves out tubes of 'lines', 'scan': it cannot draw them"):
         plotter.fiblets.export_page(tmp_path / "figure.html")
+    plotter.remove_actor(actor)
+    with pytest.raises(ValueError, match="a page cannot draw 'scan'; add streamlines or surfaces, or export an image"):
+        plotter.fiblets.export_page(tmp_path / "figure.html")
+    plotter.close()
+
+
+def floats(scene, blob):
+    return np.frombuffer(scene.blobs[blob], "<f4").reshape(-1, 3)
+
+
+def test_a_connectome_is_surfaces_of_its_nodes_and_of_the_edges_that_are_shown():
+    plotter = pv.Plotter(off_screen=True, window_size=(100, 80))
+    places = np.array([(0.0, 0.0, 0.0), (40.0, 0.0, 0.0), (40.0, 40.0, 0.0)])
+    weights = np.array([[0.0, 1.0, 0.2], [1.0, 0.0, 2.0], [0.2, 2.0, 0.0]])
+    plotter.add_connectome(weights, places, radius=2.0, node_radius=5.0, threshold=0.5, edges="tubes", name="net")
+    scene = page_of(plotter)
+    nodes, edges = scene.layers
+    assert [layer["name"] for layer in scene.layers] == ["net nodes", "net edges"]
+    found = floats(scene, nodes["places"])
+    gaps = np.linalg.norm(found[:, None] - places, axis=2)
+    np.testing.assert_allclose(gaps.min(axis=1), 5.0, rtol=1e-4)
+    assert set(gaps.argmin(axis=1)) == {0, 1, 2}
+    outward = (found - places[gaps.argmin(axis=1)]) / 5.0
+    np.testing.assert_allclose((floats(scene, nodes["normals"]) * outward).sum(axis=1), 1.0, atol=0.02)
+    found = floats(scene, edges["places"])
+    along_y = abs(found[:, 0] - 40.0) < 2.5
+    along_x = (abs(found[:, 1]) < 1.5) & (found[:, 0] < 36.0)
+    assert (along_x | along_y).all()  # the third pair is below the threshold
+    np.testing.assert_allclose(abs(found[along_x][:, 2]).max(), 1.0, rtol=0.04)  # radius by weight of the strongest
+    np.testing.assert_allclose(abs(found[along_y][:, 2]).max(), 2.0, rtol=0.04)
+    assert [(bar["title"], bar["clim"]) for bar in scene.bars] == [("weight", (0.2, 2.0))]
     plotter.close()
 
 

@@ -303,3 +303,16 @@ def test_lines_that_others_hide_are_left_out_and_no_pixel_with_them(width, visit
         assert covered > 0.05
         assert wrong < 1e-3  # of two lines at the same depth either may be drawn
         assert 0.0 < hidden < 0.98
+
+
+def test_a_connectome_is_drawn_as_the_engine_draws_it(plotter, visit, tmp_path):
+    places = np.array([(0.0, 0.0, 0.0), (40.0, 0.0, 10.0), (40.0, 40.0, -10.0), (0.0, 40.0, 0.0)])
+    weights = np.array([[0, 1, 3, 2], [1, 0, 2, 0], [3, 2, 0, 1.5], [2, 0, 1.5, 0]])
+    plotter.add_connectome(weights, places, radius=3.0, node_radius=6.0, show_scalar_bar=False)
+    plotter.camera_position = "xy"
+    plotter.camera.zoom(1.4)
+    expected = plotter.screenshot(return_img=True)
+    shown = visit(plotter.fiblets.export_page(tmp_path / "figure.html")[0]).picture()
+    wrong, drawn = differing(shown, expected)
+    assert drawn > 0.2
+    assert wrong < 0.1  # tubes and balls have flat sides

@@ -9,6 +9,7 @@ from PIL import Image
 from vtkmodules.vtkRenderingCore import vtkHardwareSelector
 
 import pvfiblets.plotting  # noqa: F401 - registers the components
+from pvfiblets.engine import FibletRenderer
 from pvfiblets.streamlines import Streamlines
 
 ALL = {"axial", "coronal", "sagittal", "3d"}
@@ -169,3 +170,57 @@ def test_all_views_are_drawn_once_the_workspace_has_stopped(four, workspace):
     four.render()
     assert workspace._kept is None
     assert all(one.GetDraw() for one in workspace._renderers.values())
+
+
+MOVES = [  # of the cross-hair or something else, and how many views draw their lines again: those whose slab moved
+    (lambda _, w: setattr(w, "position", w.position + (5.0, 3.0, 0.0)), 2),
+    (lambda _, w: w.step("axial", toward=1), 1),
+    (lambda _, w: w.step("sagittal", up=2), 1),
+    (colour, 0),
+    (lambda _, w: setattr(w.slices.layers[0], "cmap", "hot"), 0),
+    (lambda _, w: w.panes["coronal"].pan_by(10, 4), 1),
+    (turned, 1),
+    (line_width, 4),
+]
+
+
+@pytest.mark.parametrize("antialias", ["off", "coverage"])
+def test_lines_are_drawn_again_where_the_slab_has_moved(four, workspace, monkeypatch, antialias):
+    for at in range(4):
+        four.subplot(*divmod(at, 2))
+        four.picture.antialias = antialias
+    for shift in (1.0, 2.0):  # the first frame of a camera leaves out what meshes hide
+        workspace.position = workspace.position + shift
+        four.render()
+    views, steps = [], FibletRenderer._steps
+
+    def counted(self, view, *args, **more):
+        views.append(view)
+        return steps(self, view, *args, **more)
+
+    monkeypatch.setattr(FibletRenderer, "_steps", counted)
+    for n, (change, expected) in enumerate(MOVES):
+        views.clear()
+        _, picture = drawn(four, workspace, lambda change=change: change(four, workspace))
+        assert len(views) == expected, n
+        four.render()
+        with monkeypatch.context() as patch:
+            patch.setattr("pvfiblets.mappers.scene.PICTURES_PER_WINDOW", 0.0)
+            np.testing.assert_array_equal(picture, whole(four, workspace), err_msg=str(n))
+        for _ in range(2):
+            whole(four, workspace)
+
+
+def test_a_pixel_of_any_view_is_picked_without_drawing_lines_again(four, workspace, monkeypatch):
+    actor = next(iter(four.fiblets))
+    for _ in range(2):
+        whole(four, workspace)
+    before = [actor.mapper.pick_at(*_middle(one), renderer=one, tolerance=40) for one in four.renderers]
+    assert None not in before
+    monkeypatch.setattr(FibletRenderer, "_steps", None)
+    again = [actor.mapper.pick_at(*_middle(one), renderer=one, tolerance=40) for one in four.renderers]
+    assert again == before
+
+
+def _middle(renderer):
+    return [at + 0.5 * size for at, size in zip(renderer.GetOrigin(), renderer.GetSize(), strict=True)]

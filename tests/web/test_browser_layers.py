@@ -108,3 +108,23 @@ def test_several_files_are_chosen_and_opened_at_once(revisit):
     here.page.wait_for_selector("#dialog-open")
     here.wait(lambda: here.state("several") is False, "one file for a cut")
     assert here.page.locator("[data-mark]").count() == 0
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_values_along_bundles_are_plotted_beside_the_picture(visit, width):
+    here = visit("lines.fiblets", width=width, height=800)
+    (here.served.root / "fa.csv").write_text("bundle,mean\nnear,1\nnear,3\nfar,5\nfar,4\n")
+    here.press("o")
+    here.page.click("#dialog-open .v-list-item:has-text('fa.csv')")
+    here.page.evaluate("window.trame.state.update({right_open: true, tab: 'bundles'})")
+    chart = here.page.get_by_role("img", name="fa along near, far")
+    chart.wait_for()
+    here.stands()
+    box = chart.bounding_box()
+    assert box["width"] >= 280
+    assert box["x"] >= 0
+    assert box["x"] + box["width"] <= width
+    letters = chart.locator("text").first.evaluate("(one) => one.getBoundingClientRect().height")
+    assert letters >= 10
+    here.press("Control+z")
+    here.wait(lambda: chart.count() == 0, "no chart")

@@ -4,6 +4,7 @@ import asyncio
 import json
 import subprocess
 import sys
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
@@ -187,6 +188,84 @@ def test_a_table_of_bundles_colours_each_along_itself(scene, folder, lines):
     scene.forget_unused()
     session.from_dict(scene, state)
     assert scene.layers[0].settings["scalars"] == "p effect"
+
+
+def plotted(desk):
+    """Return the tab's curves of values along bundles: (positions, values) by colour, read from the picture's axes."""
+    chart = ET.fromstring(desk.page.bundles["along"]["chart"])
+    assert chart.get("role") == "img"
+    curves = {one.get("stroke"): one for one in chart.iter("polyline") if one.get("stroke") != "currentColor"}
+    places = {stroke: np.array([pair.split(",") for pair in one.get("points").split()], float)
+              for stroke, one in curves.items()}  # fmt: skip
+    low, high = (text for text in chart.iter("text") if text.get("text-anchor") == "end" and "%" not in text.text)
+    (first, last), ends = (sorted(float(one.get("x")) for one in chart.iter("text") if one.text in ("0 %", "100 %")),
+                           [float(one.get("y")) - 4.0 for one in (low, high)])  # fmt: skip
+    found = {}
+    for stroke, at in places.items():
+        values = np.interp(-at[:, 1], [-ends[0], -ends[1]], [float(low.text), float(high.text)])
+        found[stroke] = (at[:, 0] - first) / (last - first), values
+    return found, chart.get("aria-label")
+
+
+def test_values_along_bundles_are_plotted_beside_them(desk, scene, folder, lines):
+    (folder / "stats.csv").write_text(STATS)
+    layer = scene.open("lines.fiblets")
+    desk.choose(layer)
+    desk.bundles.refresh()
+    assert desk.page.bundles["along"] == {}
+    scene.attach(layer.id, scene.load_values(layer.id, "stats.csv"))
+    desk.bundles.refresh()
+    colours = {row["name"]: row["color"] for row in desk.page.bundles["rows"]}
+    curves, label = plotted(desk)
+    for name, values in (("near", [1.0, 3.0]), ("far", [5.0, 4.0])):
+        np.testing.assert_allclose(curves[colours[name]], [[0.0, 1.0], values], atol=0.02)
+    assert label == "stats along near, far"
+    assert "100 % of the way: near 3, far 4<" in desk.page.bundles["along"]["chart"]
+    assert [one["name"] for one in desk.page.bundles["along"]["legend"]] == ["near", "far"]
+    scene.bundles.set_bundle(layer.id, "near", visible=False)
+    desk.bundles.refresh()
+    assert list(plotted(desk)[0]) == [colours["far"]]
+    desk.history.undo()
+    desk.bundles.refresh()
+    assert len(plotted(desk)[0]) == 2
+    state = session.to_dict(scene)
+    scene.set(layer.id, "scalars", "orientation")
+    desk.bundles.refresh()
+    assert desk.page.bundles["along"] == {}
+    session.from_dict(scene, state)
+    desk.choose(scene.layers[0])
+    desk.bundles.refresh()
+    assert plotted(desk)[1] == "stats along near, far"
+    (folder / "stats.csv").unlink()
+    scene.set(scene.layers[0].id, "scalars", "stats p")
+    desk.bundles.refresh()
+    assert desk.page.bundles["along"] == {}
+
+
+def test_one_bundle_without_a_name_is_plotted_with_its_band(desk, scene, folder):
+    values = np.array([0.5, 2.0, np.nan, 4.0, 3.0])
+    rows = [f"{value},{value - 0.25},{value + 0.5}\n" for value in values]
+    (folder / "fa.csv").write_text("mean,low,high\n" + "".join(rows).replace("nan", ""))
+    layer = scene.open("lines.trk")
+    scene.attach(layer.id, scene.load_values(layer.id, "fa.csv"))
+    desk.choose(layer)
+    desk.bundles.refresh()
+    ((share, found),) = plotted(desk)[0].values()
+    there = np.isfinite(values)
+    np.testing.assert_allclose(share, np.linspace(0.0, 1.0, 5)[there], atol=0.01)
+    np.testing.assert_allclose(found, values[there], atol=0.02)
+    told = desk.page.bundles["along"]["chart"]
+    assert "25 % of the way: lines.trk 2 (1.75 to 2.5)<" in told
+    assert plotted(desk)[1] == "fa along lines.trk"
+
+
+def test_values_of_streamlines_are_not_plotted_along(desk, scene, folder, lines):
+    (folder / "age.txt").write_text("".join(f"{k}\n" for k in range(len(lines))))
+    layer = scene.open("lines.trk")
+    scene.attach(layer.id, scene.load_values(layer.id, "age.txt"))
+    desk.choose(layer)
+    desk.bundles.refresh()
+    assert desk.page.bundles["along"] == {}
 
 
 def test_tables_that_fit_nothing_say_why(scene, folder):

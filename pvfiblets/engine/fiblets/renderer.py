@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+import math
+from collections import OrderedDict
+from collections.abc import Generator, Hashable, Iterator
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import moderngl
 
@@ -46,6 +48,15 @@ if TYPE_CHECKING:
     from .data.sampled_volume import VolumeSource
     from .region_query import RegionQuery
     from .sample_layers import Rectangle, SampledLines
+
+
+class _Picture(NamedTuple):
+    """The last picture of one of several views."""
+
+    target: GBuffer
+    buffer: GBuffer | None  # the target once it is finished
+    made: tuple[View, Style] | None
+    last: tuple[View, FibletStyle] | None
 
 
 class FibletRenderer(LinesBehind):
@@ -92,6 +103,10 @@ class FibletRenderer(LinesBehind):
         self._fiblets = fiblets
         self._chunks: list[Chunk] = []
         self._last: tuple[View, FibletStyle] | None = None
+        self._counted: tuple[GBuffer, View, FibletStyle] | None = None  # drawn last, in whatever place
+        self._place: Hashable = None
+        self._places: OrderedDict[Hashable, _Picture] = OrderedDict()  # of all others, the least lately drawn first
+        self._room = 0
         self._known_times: dict[str, tuple[float, int]] = {}
         self._query: RegionQuery | None = None
         self._choice: CullingChoice | None = None
@@ -123,6 +138,40 @@ class FibletRenderer(LinesBehind):
             self._values = ValueSources(ctx, measurer, fiblets, self._chunks, forget, limits.buffer_bytes)
             self._keep(self._values)
 
+    def switch_to(self, place: Hashable, room: int) -> None:
+        """Draw for another view of the window. All keep their last pictures, of ``room`` pixels together at most."""
+        # The least lately drawn are given back first, and all where there is no room; an unfinished one is left.
+        if place != self._place:
+            if "gbuffer" in self._targets:
+                target: Any = self._targets.pop("gbuffer")[1]
+                self._places[self._place] = _Picture(target, self._buffer, self._made, self._last)
+            self._outdate()
+            self._place, self._buffer, self._last = place, None, None
+            held = self._places.pop(place, None)
+            if held is not None:
+                self._targets["gbuffer"] = held.target.size, held.target
+                self._buffer, self._made, self._last = held.buffer, held.made, held.last
+        self._room = max(room, self._room) if room else 0  # windows shrink while a camera moves
+        if not room:
+            self._forget_places()
+
+    def _make_room(self, size: tuple[int, int]) -> None:
+        while self._places:
+            sizes = size, *(held.target.size for held in self._places.values())
+            if sum(map(math.prod, sizes)) <= self._room:
+                break
+            self._forget_oldest()
+
+    def _forget_places(self) -> None:
+        while self._places:
+            self._forget_oldest()
+
+    def _forget_oldest(self) -> None:
+        target = self._places.popitem(last=False)[1].target
+        if self._counted is not None and self._counted[0] is target:
+            self._counted = None
+        target.release()
+
     def _draw(self, view: View, style: FibletStyle, outside: moderngl.Texture | None) -> GBuffer:
         return finish(self._steps(view, style, outside, in_pieces=False))
 
@@ -130,6 +179,8 @@ class FibletRenderer(LinesBehind):
         self, view: View, style: FibletStyle, outside: moderngl.Texture | None, *, in_pieces: bool
     ) -> Generator[None, None, GBuffer]:
         """Draw; yield after each piece, or not at all."""
+        self._counted = None
+        self._make_room(view.size)
         target = self._fitting("gbuffer", view.size, lambda: GBuffer(self._ctx, view.size))
         try:
             target.want_relief(self._ctx, style.relief)
@@ -154,7 +205,7 @@ class FibletRenderer(LinesBehind):
             if self._occlusion is not None:
                 self._occlusion.after(target, view, style)
         self._features_behind = frozenset()
-        self._last = view, style
+        self._last, self._counted = (view, style), (target, view, style)
         return target
 
     def _pieces(self, view: View, style: FibletStyle) -> Generator[None, None, GBuffer] | None:
@@ -271,6 +322,7 @@ class FibletRenderer(LinesBehind):
     def filtering(self, wanted: Filter | None) -> None:
         self._check_alive()
         self._outdate()  # also by one that fails, as everything is there again
+        self._forget_places()
         if self._occlusion is not None:
             self._occlusion.forget()
         self._kept.filtering = wanted
@@ -299,6 +351,8 @@ class FibletRenderer(LinesBehind):
 
     def _sizes(self) -> dict[str, int]:
         sizes = super()._sizes()
+        if self._places:
+            sizes["gbuffer"] = sizes.get("gbuffer", 0) + sum(held.target.nbytes for held in self._places.values())
         for chunk in self._chunks:
             for name, buffer in chunk.buffers.items():
                 sizes[name] = sizes.get(name, 0) + buffer.size
@@ -306,19 +360,21 @@ class FibletRenderer(LinesBehind):
 
     def _count(self, total: int) -> dict[str, int | None]:
         """Count fiblets of the last picture."""
-        if self._buffer is None or self._last is None:
+        if self._counted is None:
             return no_counts(total)
+        buffer, view, style = self._counted
         self._shared.bind()
-        _, planes = self._shared.write_camera(*self._last)
-        features = [*self._decoding_features(), *(["CLIP_PLANES"] if planes else []), *_ends(self._last[1])]
+        _, planes = self._shared.write_camera(view, style)
+        features = [*self._decoding_features(), *(["CLIP_PLANES"] if planes else []), *_ends(style)]
         culled = self._occlusion is not None
         return count_fiblets(
-            self._census, total, self._chunks, features, self._pipeline, self._buffer, self._kept, culled
+            self._census, total, self._chunks, features, self._pipeline, buffer, self._kept, culled
         )
 
     def release(self) -> None:
         """Give back everything on the GPU; twice is harmless."""
         release_chunks(self._chunks)
+        self._forget_places()
         if self._choice is not None:
             self._choice.release()
         super().release()

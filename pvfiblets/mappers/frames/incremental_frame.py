@@ -38,7 +38,7 @@ def draw_in_pieces(window: vtkRenderWindow, *, refining: bool = False) -> Iterat
             if camera is None:
                 continue
         for mapper in _mappers(renderer):
-            if mapper.GetAddressAsString("") in drawn:  # its engine holds one picture
+            if refining and mapper.GetAddressAsString("") in drawn:  # its engine holds one sample
                 continue
             drawn.add(mapper.GetAddressAsString(""))
             began = time.perf_counter()

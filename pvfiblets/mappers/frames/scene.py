@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -165,6 +166,9 @@ def samples_per_pixel(renderer: vtkRenderer, viewport: tuple[int, int, int, int]
     return drawn / shown if shown > 0 and drawn > shown + 1 else 1.0
 
 
+PICTURES_PER_WINDOW = 1.5
+"""Pixels of all pictures that an engine keeps, as a share of the window's: those at rest, and coarse ones."""
+
 _reduced: dict[str, tuple[float, float]] = {}
 
 
@@ -204,6 +208,21 @@ def renderers_of(prop: vtkProp) -> Iterator[vtkRenderer]:
             yield consumer
         elif isinstance(consumer, vtkProp):
             yield from renderers_of(consumer)
+
+
+def switch_view(engine: Any, renderer: vtkRenderer, actor: vtkProp | None, view: Any, style: Any) -> None:
+    """Have an engine that can keep its picture of each view of a window, where several views show its actor."""
+    if not hasattr(engine, "switch_to"):
+        return
+    window = renderer.GetRenderWindow()
+    if actor is None or sum(one.GetRenderWindow() is window for one in renderers_of(actor)) < 2:
+        engine.switch_to(None, 0)
+        return
+    left, bottom, right, top = renderer.GetViewport()
+    pixels = math.prod(view.size) / ((right - left) * (top - bottom))  # of the window
+    # Samples are not drawn again: those of all views take turns. While the camera moves, windows have fewer pixels.
+    place = ("sample" if style.exact else renderer.GetAddressAsString(""), view.size)
+    engine.switch_to(place, round(PICTURES_PER_WINDOW * pixels))
 
 
 def items_of(collection: Any) -> list[Any]:

@@ -147,6 +147,11 @@ class ColouredActor(Settings, pv.Actor):
     # Colours ------------------------------------------------------------------------------------
 
     @property
+    def active_scalars(self) -> Scalars | None:
+        """Resolved source of the colours; ``None`` for one colour."""
+        return self._scalars
+
+    @property
     def scalars_title(self) -> str | None:
         """Title of the scalar bar; ``None`` if the current colours need no bar."""
         return self._scalars.title if self._scalars is not None and self._scalars.mapped else None

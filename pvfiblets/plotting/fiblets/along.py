@@ -14,7 +14,7 @@ from pvfiblets.formats.attachments import name_of
 from pvfiblets.formats.registry import UnknownFormatError
 from pvfiblets.images.sources import is_image
 from pvfiblets.plotting.fiblets.sources import with_values_of
-from pvfiblets.query.bundles.along import TABLES, read_columns, read_profile, values_along
+from pvfiblets.query.bundles.along import TABLES, Profile, read_profile, read_profiles, values_along
 from pvfiblets.query.bundles.tract_profile import tract_profile
 from pvfiblets.support.real_numbers import real_numbers
 
@@ -29,24 +29,29 @@ def with_table_of(fiblets: FibletSet, path: str | os.PathLike[str]) -> FibletSet
     try:
         return with_values_of(fiblets, path)
     except (FormatError, UnknownFormatError):
-        if not os.fspath(path).lower().endswith(TABLES):
+        found = profiles_in(fiblets, path)
+        if not found:
             raise
-        columns, bundles = read_columns(path)
-        numbers = () if columns else read_profile(path)[0]
-        if not columns and not 2 <= len(numbers) <= MOST_POSITIONS:
-            raise
-    groups = [name for name in bundles if name in fiblets.groups]
-    if len(bundles) > 1 and not groups:
-        raise ValueError(f"{path} has profiles of {', '.join(bundles)}; the tractogram has no groups of these names")
-    for column in columns or ("mean",):
+    for name, profiles in found.items():
         values = np.full(fiblets.n_points, np.nan)
-        for group in groups or (None,):
-            along, core = read_profile(path, column, group)
-            found = values_along(fiblets, slice(None) if group is None else group, along, orient_by=core)
-            values = np.where(np.isnan(found), values, found)
-        name = name_of(path) if column == "mean" else f"{name_of(path)} {column}"
+        for group, (along, core) in profiles.items():
+            more = values_along(fiblets, slice(None) if group is None else group, along, orient_by=core)
+            values = np.where(np.isnan(more), values, more)
         fiblets = with_point_values(fiblets, name, values, bits=16)
     return fiblets
+
+
+def profiles_in(fiblets: FibletSet, path: str | os.PathLike[str]) -> dict[str, dict[str | None, Profile]]:
+    """Return the profiles in a file by array and by group of a set; nothing of values of points or streamlines."""
+    if not os.fspath(path).lower().endswith(TABLES):
+        return {}
+    found = read_profiles(path, fiblets.groups)
+    if "" in found:
+        length = len(found[""][None][0])
+        if length in (fiblets.n_points, fiblets.n_streamlines) or not 2 <= length <= MOST_POSITIONS:
+            return {}
+    name = name_of(path)
+    return {name if column in ("", "mean") else f"{name} {column}": rows for column, rows in found.items()}
 
 
 def along_bundle(

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
     from pvfiblets.mappers.fiblets import FibletMapper
-    from pvfiblets.plotting.colours.scalars import Scalars
     from pvfiblets.plotting.fiblets.profiles import Profile
     from pvfiblets.plotting.fiblets.selection_overlay import SelectionOverlay
     from pvfiblets.query.measures.table import Table
@@ -34,11 +33,6 @@ class SelectableActor(BundledActor):
         """Mappers whose pixels show this actor's streamlines."""
         layers = [Layer(self._mapper)]
         return layers if self._standout is None else [*layers, self._standout.layer]
-
-    @property
-    def active_scalars(self) -> Scalars | None:
-        """Resolved source of the colours; ``None`` for one colour."""
-        return self._scalars
 
     def select(
         self, ids: Any, *, mode: str = "replace", as_tubes: bool = AS_BEFORE, radius: float = AS_BEFORE

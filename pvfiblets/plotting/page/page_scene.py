@@ -21,9 +21,10 @@ from pvfiblets.mappers.effects.line_light import LineLight
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.mappers.frames.scene import items_of, to_array, world_planes
+from pvfiblets.mappers.tubes import TubeMapper
 from pvfiblets.page.scene import CameraPlace, Light, PageScene, encoded, fiblet_layer
 from pvfiblets.plotting.page.cuts import cuts_of
-from pvfiblets.plotting.page.surfaces import add_image, add_surface, reflects_of
+from pvfiblets.plotting.page.surfaces import add_image, add_surface, add_tubes, reflects_of
 from pvfiblets.plotting.slices.plane import prepare
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ _SHOWN_EFFECTS = {"light", "illuminated", "selection"}
 _OPACITY = "layers"
 _SOON = 5_000_000  # points
 MOST_FIBLET_LAYERS = 15
+MOST_TUBE_POINTS = 1_000_000  # of surfaces around spline tubes: some 50 MB
 
 
 def export_page(
@@ -61,6 +63,8 @@ def page_and_actors(plotter: pv.BasePlotter, *, title: str | None = None) -> tup
     said = title or getattr(plotter, "title", None) or "Streamlines"
     scene = PageScene(str(said))
     unable, names = add_all(scene, plotter)
+    if unable and not scene.layers:
+        raise ValueError(f"a page cannot draw {', '.join(unable)}; add streamlines or surfaces, or export an image")
     if unable:
         warnings.warn(f"the page leaves out {', '.join(unable)}: it cannot draw them", stacklevel=3)
     if renderer.camera_set:
@@ -110,6 +114,9 @@ def _add_actor(scene: PageScene, name: str, actor: Any, unable: list[str], *, co
     mapper = actor.GetMapper() if hasattr(actor, "GetMapper") else None
     if isinstance(mapper, FibletMapper):
         _add_fiblets(scene, name, actor, mapper, unable, controls=controls)
+    elif isinstance(mapper, TubeMapper) and controls and (mapper.reading.points or 0) <= MOST_TUBE_POINTS:
+        add_tubes(scene, name, actor, mapper)
+        _add_bar(scene, actor, mapper)
     elif isinstance(mapper, EngineMapper):  # its data are no triangles
         unable.append(repr(_label(name, type(actor).__name__)))
     elif getattr(actor, "pixels", None) is not None and hasattr(actor, "place"):
@@ -171,6 +178,10 @@ def _add_fiblets(
         scene, fiblets, name=_label(name, "streamlines"), colours=colours, keep=keep, line_width=mapper.drawn_width,
         ends=mapper.ends, light=light, reflects=reflects, sheen=sheen, matrix=matrix, **more,
     )  # fmt: skip
+    _add_bar(scene, actor, mapper)
+
+
+def _add_bar(scene: PageScene, actor: Any, mapper: EngineMapper[Any]) -> None:
     scalars = getattr(actor, "active_scalars", None)
     if scalars is not None and scalars.mapped and getattr(mapper.colouring, "lut", None) is not None:
         lut, clim = mapper.colouring.lut, mapper.colouring.clim

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 
 from pvfiblets.mappers.frames.scene import to_array, world_planes
 from pvfiblets.page.scene import PageScene, encoded
+
+if TYPE_CHECKING:
+    from pvfiblets.mappers.tubes import TubeMapper
 
 _FLAT = 0  # VTK_FLAT
 
@@ -20,7 +23,7 @@ def reflects_of(prop: Any) -> tuple[tuple[float, float, float, float], tuple[flo
     return reflects, (red, green, blue)
 
 
-def add_surface(scene: PageScene, name: str, actor: Any, mapper: Any) -> bool:
+def add_surface(scene: PageScene, name: str, actor: Any, mapper: Any, *, smooth: bool = False) -> bool:
     """Show the triangles of an actor in the colours that its mapper gives them; say whether it has any."""
     mapper.Update()
     found = pv.wrap(mapper.GetInputDataObject(0, 0))
@@ -44,8 +47,8 @@ def add_surface(scene: PageScene, name: str, actor: Any, mapper: Any) -> bool:
     # Triangles get corners of their own where they have colours or edges of their own.
     corners = triangles.ravel() if by_cell or edges is not None else slice(None)
     points, colours = np.asarray(surface.points, np.float32)[corners], None
-    smooth = prop.GetInterpolation() != _FLAT and "Normals" in surface.point_data
-    normals = np.asarray(surface.point_data["Normals"], np.float32)[corners] if smooth else None
+    smooth = smooth or prop.GetInterpolation() != _FLAT
+    normals = surface.point_data.get("Normals") if smooth else None
     if by_cell:
         colours = np.repeat(np.asarray(surface.cell_data["_page"])[: len(triangles)], 3, axis=0)
     elif "_page" in surface.point_data:
@@ -75,7 +78,7 @@ def add_surface(scene: PageScene, name: str, actor: Any, mapper: Any) -> bool:
     if any(culled.values()):
         layer["culled"] = [side for side, on in culled.items() if on]
     if normals is not None:
-        layer["normals"] = scene.add_blob(normals)
+        layer["normals"] = scene.add_blob(np.asarray(normals, np.float32)[corners])
     if "_values" in surface.point_data:
         table = mapper.GetLookupTable()
         layer["values"] = scene.add_blob(np.asarray(surface.point_data["_values"], np.float32)[corners])
@@ -91,6 +94,18 @@ def add_surface(scene: PageScene, name: str, actor: Any, mapper: Any) -> bool:
         layer["planes"] = planes.tolist()
     scene.add_layer(layer, bounds)
     return True
+
+
+def add_tubes(scene: PageScene, name: str, actor: Any, mapper: TubeMapper) -> None:
+    """Show the surfaces around spline tubes, if they are not all filtered out or cut away."""
+    found = pv.wrap(mapper.reading.data(colours=True))
+    if not found.n_cells:
+        return
+    surface = found.copy(deep=False)
+    # VTK names those of tubes otherwise, and drops them where balls are added.
+    normals = surface.point_data.active_normals
+    surface.point_data["Normals"] = surface.point_normals if normals is None else normals
+    add_surface(scene, name, actor, pv.DataSetMapper(surface), smooth=True)
 
 
 def _edges(prop: Any, surface: pv.PolyData, triangles: np.ndarray) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,9 +24,10 @@ from .tract_profile import as_line, bundle_lines, resampled_lines, runs_backward
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["TABLES", "read_columns", "read_profile", "values_along"]
+__all__ = ["TABLES", "Profile", "read_profile", "read_profiles", "values_along"]
 
 Floats = npt.NDArray[np.float64]
+Profile = tuple[Floats, Floats | None]  # numbers of positions along a bundle, and these positions if they are known
 TABLES = (".csv", ".tsv", ".txt", ".npy")
 PLACES = ("bundle", "position", "share_of_length", "x", "y", "z")  # columns that say where values are
 CHUNK = 1 << 20  # points decoded, or places resampled, together
@@ -83,9 +85,7 @@ def values_along(
     return found
 
 
-def read_profile(
-    path: str | os.PathLike[str], column: str = "mean", bundle: str | None = None
-) -> tuple[Floats, Floats | None]:
+def read_profile(path: str | os.PathLike[str], column: str = "mean", bundle: str | None = None) -> Profile:
     """Read the numbers of a bundle's positions, and the positions from the columns x, y, z if a table has them."""
     where = Path(path).expanduser()
     names, rows = _table(where)
@@ -98,7 +98,14 @@ def read_profile(
         known = list(dict.fromkeys(row[at] for row in rows))
         if bundle not in known and len(known) > 1:
             raise ValueError(f"{where} has profiles of {', '.join(known)}; give the name of one of these groups as ids")
-        rows = [row for row in rows if bundle not in known or row[at] == bundle]
+    return _profile(where, names, rows, column, bundle)
+
+
+def _profile(where: Path, names: list[str], rows: list[list[str]], column: str, bundle: str | None) -> Profile:
+    if "bundle" in names:
+        at = names.index("bundle")
+        chosen = [row for row in rows if row[at] == bundle]
+        rows = chosen or rows
     wanted = [column, *(axis for axis in "xyz" if axis in names)]
     cells = [[row[names.index(name)] or "nan" for row in rows] for name in wanted]
     if wrong := next((cell for found in cells for cell in found if not _is_number(cell)), None):
@@ -107,16 +114,29 @@ def read_profile(
     return values, np.stack(core, axis=1) if len(core) == 3 and np.isfinite(core).all() else None
 
 
-def read_columns(path: str | os.PathLike[str]) -> tuple[list[str], list[str]]:
-    """Read the names of a table's columns of values, and of its bundles; nothing of numbers without a head."""
+def read_profiles(
+    path: str | os.PathLike[str], groups: Container[str] = ()
+) -> dict[str, dict[str | None, Profile]]:
+    """Read each column of values of a file, by those of its bundles that are groups, or of None for all streamlines.
+
+    Numbers without a head are the column ``""``.
+    """
     where = Path(path).expanduser()
     names, rows = _table(where)
+    if not names:
+        return {"": {None: (read_values(where).astype(np.float64), None)}}
     cells = dict(zip(names, zip(*rows, strict=True), strict=True)) if rows else {}
     numbers = [name for name, column in cells.items() if all(map(_is_number, filter(None, column)))]
-    found = [name for name in numbers if name not in PLACES]
-    if names and not found:
+    columns = [name for name in numbers if name not in PLACES]
+    if not columns:
         raise FormatError(where, None, f"no numbers in the columns {', '.join(names)}", "a column of values")
-    return found, list(dict.fromkeys(cells.get("bundle", ())))
+    bundles = list(dict.fromkeys(cells.get("bundle", ())))
+    known: list[str | None] = [name for name in bundles if name in groups]
+    if len(bundles) > 1 and not known:
+        raise ValueError(f"{path} has profiles of {', '.join(bundles)}; the tractogram has no groups of these names")
+    return {
+        column: {name: _profile(where, names, rows, column, name) for name in known or [None]} for column in columns
+    }
 
 
 def _table(where: Path) -> tuple[list[str], list[list[str]]]:

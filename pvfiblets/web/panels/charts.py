@@ -101,8 +101,10 @@ def profiles_chart(positions: ArrayLike, bands: Sequence[Band], title: str = "va
         for k, a in enumerate(x)
         if any(some[k] for some in fine)
     )
+    subjects = ", ".join(one.name for one in bands if one.name != title)
+    label = escape(f"{title} along {subjects or 'streamlines'}")
     return (
-        f'<svg viewBox="0 0 {width:g} {height:g}" width="100%" role="img" aria-label="profile">'
+        f'<svg viewBox="0 0 {width:g} {height:g}" width="100%" role="img" aria-label="{label}">'
         f"{lines}{axes}{ticks}{ends}{told}</svg>"
     )
 
@@ -113,12 +115,13 @@ def _points(places: np.ndarray) -> str:
 
 def _told(bands: Sequence[Band], fine: Sequence[np.ndarray], place: int) -> str:
     """Return the values at a place, for people."""
-    return ", ".join(
-        f"{escape(one.name if len(one.name) <= 24 else f'{one.name[:23]}…')} {one.mean[place]:.4g} "
-        f"({one.low[place]:.4g} to {one.high[place]:.4g})"
-        for one, some in zip(bands, fine, strict=True)
-        if some[place]
-    )
+    return ", ".join(_value(one, place) for one, some in zip(bands, fine, strict=True) if some[place])
+
+
+def _value(one: Band, place: int) -> str:
+    low, high = one.low[place], one.high[place]
+    reach = f" ({low:.4g} to {high:.4g})" if low < high else ""
+    return f"{escape(one.name if len(one.name) <= 24 else f'{one.name[:23]}…')} {one.mean[place]:.4g}{reach}"
 
 
 def _label(x: float, y: float, text: str, anchor: str) -> str:

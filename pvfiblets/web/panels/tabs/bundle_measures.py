@@ -12,7 +12,7 @@ import numpy as np
 
 from pvfiblets.web.actions import LineActions
 from pvfiblets.web.panels import elements as ui
-from pvfiblets.web.panels.charts import Band, profiles_chart, short
+from pvfiblets.web.panels.charts import COLOURS, Band, profiles_chart, short
 from pvfiblets.web.panels.csv_tables import table_text
 from pvfiblets.web.panels.elements import fold, html, v3
 from pvfiblets.web.scene.files.loading import Watch
@@ -30,6 +30,9 @@ MEASURED = 2000  # bundles in one table
 PLACES = 100
 SHOWN = 200  # rows of a table on the page
 KINDS = ("profile", "table")
+
+Curves = dict[str | None, tuple[np.ndarray, np.ndarray, np.ndarray]]
+"""Mean, low and high value at positions along bundles, by the bundle's name; None for all streamlines."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,6 +208,51 @@ def _profiles(found: list[Any], bundles: tuple[Bundle, ...], name: str) -> dict[
     }  # fmt: skip
 
 
+def curves_along(scene: Any, layer: Layer) -> Curves:
+    """Return the profiles from a file that colour a tractogram along its bundles; nothing where others do."""
+    from pvfiblets.formats.attachments import name_of
+    from pvfiblets.plotting.fiblets.along import profiles_in
+
+    name, fiblets = layer.settings["scalars"], scene.actor(layer.id).fiblets
+    for path in reversed(layer.source.values):
+        if name in fiblets.per_point and name.startswith(name_of(path)):
+            try:
+                found = profiles_in(fiblets, scene.files.resolve(path))
+            except (OSError, ValueError):  # the file has gone, or is another one now
+                return {}
+            if name in found:
+                ends = [found.get(f"{name} {end}", found[name]) for end in ("low", "high")]
+                return {group: (rows, ends[0][group][0], ends[1][group][0]) for group, (rows, _) in found[name].items()}
+    return {}
+
+
+def along_chart(layer: Layer, bundles: tuple[Bundle, ...], curves: Curves) -> dict[str, Any]:
+    """Return what the page shows of the profiles of visible bundles."""
+    known: dict[str | None, Bundle] = {one.name: one for one in bundles}
+    names = [name for name in curves if name not in known or known[name].visible][:PROFILED]
+    if not names:
+        return {}
+    most = max(len(curves[name][0]) for name in names)
+    bands = [
+        Band(
+            name or layer.name,
+            known[name].color if name in known else COLOURS[place % len(COLOURS)],
+            *(_resampled(curve, most) for curve in curves[name]),
+        )
+        for place, name in enumerate(names)
+    ]
+    return {
+        "chart": profiles_chart(np.linspace(0.0, 1.0, most), bands, layer.settings["scalars"]),
+        "legend": [{"name": one.name, "color": one.color} for one in bands],
+    }
+
+
+def _resampled(curve: np.ndarray, n: int) -> np.ndarray:
+    if len(curve) == n:
+        return curve
+    return np.interp(np.linspace(0.0, 1.0, n), np.linspace(0.0, 1.0, len(curve)), curve)
+
+
 def _statistics(table: Table) -> dict[str, Any]:
     """Return what the page shows of a table: the most telling columns first."""
     titles = {
@@ -242,13 +290,7 @@ def build(app: Explorer) -> None:
             )  # fmt: skip
             ui.button("Plot", size="small", click=measuring.profile, data_action="profile-bundles")
         with html.Div(v_if="measures.profile.rows", id="bundle-profile"):
-            html.Div(v_html=("measures.profile.chart",), classes="px-2 pt-1")
-            with (
-                html.Div(classes="px-3", style="display: flex; flex-wrap: wrap; gap: 2px 10px"),
-                html.Span(v_for="one in measures.profile.legend", key="one.name", classes="pv-small pv-pair"),
-            ):
-                html.Span(classes="pv-dot", style=("{ background: one.color }",))
-                html.Span("{{ one.name }} ({{ one.count }})", style="overflow-wrap: anywhere")
+            build_chart("measures.profile")
             _table("measures.profile", "profile")
         with ui.labelled("Statistics"):
             ui.button("Table", size="small", click=measuring.statistics, data_action="table-bundles",
@@ -256,6 +298,17 @@ def build(app: Explorer) -> None:
         with html.Div(v_if="measures.table.rows", id="bundle-table"):
             _table("measures.table", "table")
             html.Div("{{ measures.table.more }}", v_if="measures.table.more", classes="pv-small px-3")
+
+
+def build_chart(record: str) -> None:
+    """Build a chart with its legend."""
+    html.Div(v_html=(f"{record}.chart",), classes="px-2 pt-1")
+    with (
+        html.Div(classes="px-3", style="display: flex; flex-wrap: wrap; gap: 2px 10px"),
+        html.Span(v_for=f"one in {record}.legend", key="one.name", classes="pv-small pv-pair"),
+    ):
+        html.Span(classes="pv-dot", style=("{ background: one.color }",))
+        html.Span("{{ one.name }}{{ one.count ? ` (${one.count})` : '' }}", style="overflow-wrap: anywhere")
 
 
 def _table(record: str, kind: str) -> None:

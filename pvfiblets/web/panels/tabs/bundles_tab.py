@@ -15,6 +15,7 @@ from pvfiblets.web.session.document import LINES
 
 if TYPE_CHECKING:
     from pvfiblets.web.app import Explorer
+    from pvfiblets.web.session.document import Bundle, Layer
 
 LISTED = 300  # rows of the list; more are counted, and found by their names
 
@@ -26,6 +27,7 @@ class BundleActions(LineActions):
 
     def __init__(self, app: Explorer) -> None:
         super().__init__(app)
+        self._along: tuple[Any, bundle_measures.Curves] = ((), {})  # which values of a layer, and these
         self._checked: list[str] = []
         self._sought = ""
 
@@ -33,7 +35,7 @@ class BundleActions(LineActions):
         """Show the bundles of the chosen tractogram."""
         page, scene = self._app.page, self._app.scene
         if not page.chosen or page.chosen_kind not in LINES:
-            page.bundles, self._sought = {"layer": "", "rows": [], "count": 0}, ""
+            page.bundles, self._sought = {"layer": "", "rows": [], "count": 0, "along": {}}, ""
             return
         bundles = scene.bundles.of_layer(page.chosen)
         known = {one.name for one in bundles}
@@ -55,7 +57,15 @@ class BundleActions(LineActions):
             "more": f"and {len(found) - LISTED:,} more" if len(found) > LISTED else "",
             "checked": len(self._checked), "selected": selected, "all": all(one.visible for one in bundles),
             "coloured": layer.settings["scalars"] == "group",
+            "along": self._plot_along(layer, bundles),
         }  # fmt: skip
+
+    def _plot_along(self, layer: Layer, bundles: tuple[Bundle, ...]) -> dict[str, Any]:
+        """Return a chart of the values along the visible bundles that colour them, from a file; nothing of others."""
+        key = layer.id, layer.source, layer.settings["scalars"]
+        if self._along[0] != key:
+            self._along = key, bundle_measures.curves_along(self._app.scene, layer)
+        return bundle_measures.along_chart(layer, bundles, self._along[1])
 
     def check(self, name: str, on: bool) -> None:
         """Check or uncheck a bundle for actions on several."""
@@ -216,6 +226,9 @@ def build(app: Explorer) -> None:
                     for suffix in EXPORTS:
                         v3.VListItem(title=suffix, click=(bundles.export, f"['{suffix}']"),
                                      data_bundle_export=suffix)  # fmt: skip
+        with html.Div(v_if="bundles.along && bundles.along.chart", id="values-along"):
+            html.Div("Values along bundles", classes="pv-head")
+            bundle_measures.build_chart("bundles.along")
         bundle_finding.build(app)
         bundle_measures.build(app)
 
