@@ -205,7 +205,7 @@ def test_lines_are_drawn_again_where_the_slab_has_moved(four, workspace, monkeyp
         assert len(views) == expected, n
         four.render()
         with monkeypatch.context() as patch:
-            patch.setattr("pvfiblets.mappers.scene.PICTURES_PER_WINDOW", 0.0)
+            patch.setattr("pvfiblets.mappers.frames.scene.PICTURES_PER_WINDOW", 0.0)
             np.testing.assert_array_equal(picture, whole(four, workspace), err_msg=str(n))
         for _ in range(2):
             whole(four, workspace)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.codec.small_sets import prefer_kernels
 from pvfiblets.streamlines import Streamlines
 
 from ...record import Axes, Figure, Record
@@ -167,6 +168,8 @@ class CodecStudy:
             options.points = min(options.points, QUICK_POINTS)
         chosen = variants(options.quick)
         missing: set[str] = set()
+        prefer_kernels("coding")  # a set of so few points would be coded without
+        prefer_kernels("decoding")
         with one_thread():
             for data in data_sets(options):
                 yield from self._measured(data, chosen, missing, options)
