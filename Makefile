@@ -24,7 +24,7 @@ serve: $(VENV)/.ready-web demo
 # small pictures: here without optimising it, by `make test-all` as users have it.
 test test-more: export GALLIVM_PERF = nopt
 test test-more test-all: export LEAST = 4.3
-test: environment lint gl
+test: environment lint gl shaders
 	$(PYTEST)
 
 # What `make test` leaves out: browsers, windows, proxies, workflows, the docs' pages and the examples as programs, soak, the
