@@ -133,6 +133,18 @@ def test_a_small_file_holds_the_same_set(exact, tmp_path):
     assert_equal(pf.FibletSet.open(tmp_path / "small.fiblets"), pf.FibletSet.open(tmp_path / "plain.fiblets"))
 
 
+def test_any_type_of_values_of_streamlines_comes_back(tmp_path):
+    made = brain_streamlines(600, seed=1)
+    n = np.arange(len(made))
+    made.per_streamline.update(
+        fields=np.stack([n, n], axis=1).astype(np.int32).view([("a", "<i4"), ("b", "<i4")]).ravel(),
+        big=n.astype(">f4"), days=n.astype("<M8[D]"), raw=n.astype("<u4").view("V4"), texts=n.astype(str),
+    )  # fmt: skip
+    fiblets = pf.compress(made)
+    fiblets.save(tmp_path / "a.fiblets", small=True)
+    assert_equal(pf.FibletSet.open(tmp_path / "a.fiblets"), fiblets)
+
+
 def test_codes_of_tracking_take_less_than_three_quarters(tmp_path):
     fiblets = pf.compress(brain_streamlines(200, step=0.1, seed=2))
     fiblets.save(tmp_path / "plain.fiblets")

@@ -41,7 +41,7 @@ def pack_members(members: dict[str, Member]) -> tuple[dict[str, Any], dict[str, 
     facts, found = {}, dict(members)
     for name, member in members.items():
         size = math.prod(member.shape) * member.dtype.itemsize
-        if size < LEAST or member.dtype.hasobject:
+        if size < LEAST or member.dtype.hasobject or member.dtype.names:  # JSON has no tuples for fields
             continue
         check_room(2 * size)
         array = np.frombuffer(b"".join(member.pieces()), member.dtype).reshape(member.shape)
