@@ -34,7 +34,7 @@ def test_a_change_in_another_module_compiles_anew(tmp_path):
     first, second = run(tmp_path), run(tmp_path)
     assert first == ["3.0", "0"]
     assert second == ["3.0", "1"], "an unchanged codec must use what was kept"
-    other = tmp_path / "pvfiblets" / "codec" / "nearest.py"
+    other = tmp_path / "pvfiblets" / "codec" / "kernels" / "nearest.py"
     other.write_text(other.read_text() + "\n# changed\n")
     assert run(tmp_path) == ["3.0", "0"]
 
@@ -110,7 +110,8 @@ def test_all_that_codes_is_compiled_beforehand():
 
 BEFOREHAND = """
 import pvfiblets
-from pvfiblets.codec import compiled_coder, jit
+from pvfiblets.codec import jit
+from pvfiblets.codec.encoding import compiled_coder
 from pvfiblets.codec.kernels import decode_kernels, direction_kernels, lattice_kernels, turn_kernels
 from pvfiblets.codec.small_sets import STATES
 from pvfiblets.synthetic import brain_streamlines

@@ -188,7 +188,8 @@ def test_a_truncated_long_line_is_reported(cut, tmp_path, short_memory) -> None:
 PEAK = """
 import sys
 from pvfiblets.codec.files import convert
-from pvfiblets.codec import encode, parameters
+from pvfiblets.codec import parameters
+from pvfiblets.codec.encoding import encode
 from pvfiblets.formats import scratch
 scratch.LONG, scratch.SPAN = 200_000, 100_000
 parameters.SAMPLED = convert.CHUNK_POINTS = parameters.BLOCK_POINTS = encode.LONG_PART = 100_000
