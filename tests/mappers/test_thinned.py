@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 import pvfiblets
 from pvfiblets.codec.editing.restrict import even_share, restrict
 from pvfiblets.mappers import thinned
-from pvfiblets.mappers.frames.scene import reduce_detail
+from pvfiblets.mappers.frames import scene
+from pvfiblets.mappers.frames.scene import reduce_detail, slack, wanted_share
 from pvfiblets.synthetic import brain_streamlines
 
 SHARE = 0.25
@@ -44,6 +46,16 @@ def drawn_by(engine):
     depth = np.frombuffer(picture.depth.read(), np.uint32)
     ids = np.frombuffer(picture.ids.read(), np.uint32).reshape(len(depth), -1)[:, 0]
     return set(np.unique(ids[depth != 0xFFFFFFFF]).tolist())
+
+
+def test_a_window_at_the_address_of_a_gone_one_draws_all(plotter):
+    gone = vtkRenderWindow()
+    reduce_detail(gone, 2.0, SHARE)
+    address = gone.GetAddressAsString("")
+    del gone
+    scene._reduced[plotter.render_window.GetAddressAsString("")] = scene._reduced.pop(address)
+    assert wanted_share(plotter.render_window) == 1.0
+    assert slack(plotter.renderer) == 0.0
 
 
 def test_a_share_of_the_streamlines_is_drawn_at_reduced_detail_and_all_after_it(plotter, brain):

@@ -11,6 +11,7 @@ from weakref import WeakSet
 
 import numpy as np
 import numpy.typing as npt
+from vtkmodules.vtkCommonCore import vtkWeakReference
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor, vtkAssembly, vtkProp, vtkPropAssembly, vtkRenderer
 
@@ -169,7 +170,7 @@ def samples_per_pixel(renderer: vtkRenderer, viewport: tuple[int, int, int, int]
 PICTURES_PER_WINDOW = 1.5
 """Pixels of all pictures that an engine keeps, as a share of the window's: those at rest, and coarse ones."""
 
-_reduced: dict[str, tuple[float, float]] = {}
+_reduced: dict[str, tuple[Any, float, float]] = {}  # by address; another window may have it later
 
 
 def reduce_detail(window: vtkRenderWindow, pixels: float, share: float = 1.0) -> None:
@@ -177,17 +178,24 @@ def reduce_detail(window: vtkRenderWindow, pixels: float, share: float = 1.0) ->
     address = window.GetAddressAsString("")
     _reduced.pop(address, None)
     if pixels > 0.0 or share < 1.0:
-        _reduced[address] = pixels, share
+        alive = vtkWeakReference()
+        alive.Set(window)
+        _reduced[address] = alive, pixels, share
 
 
 def slack(renderer: vtkRenderer) -> float:
     """Return the error in drawn pixels that :func:`reduce_detail` allows in a renderer's window; 0 by default."""
-    return _reduced.get(renderer.GetRenderWindow().GetAddressAsString(""), (0.0, 1.0))[0] if _reduced else 0.0
+    return _reduction(renderer.GetRenderWindow())[0] if _reduced else 0.0
 
 
 def wanted_share(window: vtkRenderWindow) -> float:
     """Return the share of the streamlines that :func:`reduce_detail` requests in a window; 1 by default."""
-    return _reduced.get(window.GetAddressAsString(""), (0.0, 1.0))[1] if _reduced else 1.0
+    return _reduction(window)[1] if _reduced else 1.0
+
+
+def _reduction(window: vtkRenderWindow) -> tuple[float, float]:
+    held, *found = _reduced.get(window.GetAddressAsString(""), (None, 0.0, 1.0))
+    return (0.0, 1.0) if held is None or held.Get() is None else (found[0], found[1])
 
 
 def in_motion(renderer: vtkRenderer) -> bool:
