@@ -52,7 +52,7 @@ def pack_members(members: dict[str, Member]) -> tuple[dict[str, Any], dict[str, 
 
 def pack(array: Array) -> tuple[dict[str, Any], Bytes] | None:
     """Return facts for the header, and the bytes of a file; None where these would be no fewer."""
-    coded = [_coded(stream) for stream in _streams(np.ascontiguousarray(array))]
+    coded = [_coded(*stream) for stream in _streams(np.ascontiguousarray(array))]
     packed = np.frombuffer(b"".join(piece for _, pieces in coded for piece in pieces), np.uint8)
     facts = {
         "dtype": np.lib.format.dtype_to_descr(array.dtype),
@@ -93,19 +93,23 @@ def unpack(path: str | PathLike[str], name: str, facts: dict[str, Any], packed: 
 
 
 def _at(packed: Bytes, place: int) -> int:
-    """Byte of the file, of which an array is mapped."""
+    """Return the byte of the file at a place of an array that is mapped from it."""
     return int(getattr(packed, "offset", 0)) + place
 
 
-def _streams(array: Array) -> Iterator[tuple[bool, Bytes]]:
+def _streams(array: Array) -> Iterator[tuple[int, Bytes, int, Bytes]]:
+    """Yield whether a stream is of differences, its bytes, its shift, and the lengths of its codes."""
     if array.dtype.itemsize % 2:
-        yield False, array.reshape(-1).view(np.uint8)
+        values = array.reshape(-1).view(np.uint8)
+        yield 0, values, *_lengths(values)[1:]
         return
     for column in array.reshape(len(array), -1).view("<u2").T:
-        plain, differences = (_bytes_of(c) for c in (column, np.diff(column, prepend=np.uint16(0))))
-        least = min((plain, False), (differences, True), key=lambda one: sum(_lengths(b)[0] for b in one[0]))
-        for stream in least[0]:
-            yield least[1], stream
+        rows = column, np.diff(column, prepend=np.uint16(0))
+        forms = [[(values, *_lengths(values)) for values in _bytes_of(form)] for form in rows]
+        plain, changed = (sum(size for _, size, *_ in form) for form in forms)
+        differences = int(changed < plain)
+        for values, _, shift, lengths in forms[differences]:
+            yield differences, values, shift, lengths
 
 
 def _bytes_of(column: npt.NDArray[np.uint16]) -> tuple[Bytes, Bytes]:
@@ -131,11 +135,9 @@ def _model(lengths: Bytes) -> bytes:
     return zlib.compress((lengths[:, 0::2] | lengths[:, 1::2] << 4).tobytes(), 9)
 
 
-def _coded(stream: tuple[bool, Bytes]) -> tuple[Stream, list[bytes]]:
+def _coded(differences: int, values: Bytes, shift: int, lengths: Bytes) -> tuple[Stream, list[bytes]]:
     from ..kernels.entropy_kernels import BLOCK, LONGEST, canonical_codes, encode_blocks
 
-    differences, values = stream
-    _, shift, lengths = _lengths(values)
     codes = np.zeros(lengths.shape, np.uint16)
     canonical_codes(lengths, codes)
     blocks = []
@@ -146,7 +148,7 @@ def _coded(stream: tuple[bool, Bytes]) -> tuple[Stream, list[bytes]]:
         encode_blocks(part, shift, lengths, codes, room, sizes)
         blocks += [row[:size].tobytes() for row, size in zip(room, sizes, strict=True)]
     model, table = _model(lengths), np.array([[len(block), zlib.crc32(block)] for block in blocks], "<u4")
-    return (int(differences), shift, len(model)), [model, table.tobytes(), *blocks]
+    return (differences, shift, len(model)), [model, table.tobytes(), *blocks]
 
 
 def _decoded(
