@@ -42,6 +42,7 @@ from pvfiblets.mappers.frames.scene import (
     smoothers,
     switch_view,
     to_array,
+    weak,
     world_planes,
 )
 from pvfiblets.mappers.frames.shifted_cameras import is_shifted
@@ -52,7 +53,6 @@ from pvfiblets.mappers.frames.windows import (
     contexts_with,
     gl_viewport,
     make_current_again,
-    weak,
 )
 from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.vtk_pipeline.actor_link import ActorLink

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Any
 from vtkmodules.vtkCommonCore import vtkCommand
 
 from pvfiblets.mappers.frames.idle_windows import shown_pictures
-from pvfiblets.mappers.frames.scene import in_motion, items_of, keep_views
+from pvfiblets.mappers.frames.scene import in_motion, items_of, keep_views, weak
 from pvfiblets.mappers.frames.scene_state import scene_state
-from pvfiblets.mappers.frames.windows import weak
 
 if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow

@@ -170,7 +170,14 @@ def samples_per_pixel(renderer: vtkRenderer, viewport: tuple[int, int, int, int]
 PICTURES_PER_WINDOW = 1.5
 """Pixels of all pictures that an engine keeps, as a share of the window's: those at rest, and coarse ones."""
 
-_reduced: dict[str, tuple[Any, float, float]] = {}  # by address; another window may have it later
+def weak(target: Any) -> vtkWeakReference:
+    """Return VTK's weak reference: Python's dies with the wrapper, which VTK makes anew at will."""
+    reference = vtkWeakReference()
+    reference.Set(target)
+    return reference
+
+
+_reduced: dict[str, tuple[vtkWeakReference, tuple[float, float]]] = {}  # by address, which a later window may have
 
 
 def reduce_detail(window: vtkRenderWindow, pixels: float, share: float = 1.0) -> None:
@@ -178,9 +185,7 @@ def reduce_detail(window: vtkRenderWindow, pixels: float, share: float = 1.0) ->
     address = window.GetAddressAsString("")
     _reduced.pop(address, None)
     if pixels > 0.0 or share < 1.0:
-        alive = vtkWeakReference()
-        alive.Set(window)
-        _reduced[address] = alive, pixels, share
+        _reduced[address] = weak(window), (pixels, share)
 
 
 def slack(renderer: vtkRenderer) -> float:
@@ -194,8 +199,8 @@ def wanted_share(window: vtkRenderWindow) -> float:
 
 
 def _reduction(window: vtkRenderWindow) -> tuple[float, float]:
-    held, *found = _reduced.get(window.GetAddressAsString(""), (None, 0.0, 1.0))
-    return (0.0, 1.0) if held is None or held.Get() is None else (found[0], found[1])
+    alive, found = _reduced.get(window.GetAddressAsString(""), (None, (0.0, 1.0)))
+    return found if alive is not None and alive.Get() is not None else (0.0, 1.0)
 
 
 def in_motion(renderer: vtkRenderer) -> bool:

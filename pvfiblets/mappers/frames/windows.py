@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING, Any
 
 import moderngl
 from vtkmodules.util.vtkConstants import VTK_UNSIGNED_CHAR
-from vtkmodules.vtkCommonCore import vtkCommand, vtkWeakReference
+from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkRenderingOpenGL2 import vtkTextureObject
 
-from pvfiblets.mappers.frames.scene import renderers_of
+from pvfiblets.mappers.frames.scene import renderers_of, weak
 from pvfiblets.mappers.frames.scene_depth import OutsideDepth
 
 if TYPE_CHECKING:
@@ -32,13 +32,6 @@ GL_VIEWPORT = 0x0BA2
 MAX_ROW = 4096  # greatest width of a texture that holds a list: below every driver's limit
 
 _contexts: dict[str, WindowContext] = {}
-
-
-def weak(target: Any) -> vtkWeakReference:
-    """Return VTK's weak reference: Python's dies with the wrapper, which VTK makes anew at will."""
-    reference = vtkWeakReference()
-    reference.Set(target)
-    return reference
 
 
 def gl_viewport(window: Any) -> tuple[int, int, int, int]:

@@ -14,8 +14,7 @@ from vtkmodules.vtkRenderingCore import vtkActor
 from pvfiblets.engine.effects.antialias_coverage import Coverage, SmoothedLines
 from pvfiblets.engine.effects.picture import Attachment
 from pvfiblets.mappers.engine_mapper import EngineMapper
-from pvfiblets.mappers.frames.scene import items_of, smoothers
-from pvfiblets.mappers.frames.windows import weak
+from pvfiblets.mappers.frames.scene import items_of, smoothers, weak
 
 if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer

@@ -32,10 +32,10 @@ from pvfiblets.engine.effects.sample_positions import sample_squares
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.mappers.frames.idle_windows import finish, shown_pictures
-from pvfiblets.mappers.frames.scene import in_motion, items_of, lenses, partly_shown, streamed
+from pvfiblets.mappers.frames.scene import in_motion, items_of, lenses, partly_shown, streamed, weak
 from pvfiblets.mappers.frames.scene_state import scene_state
 from pvfiblets.mappers.frames.shifted_cameras import shifted
-from pvfiblets.mappers.frames.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
+from pvfiblets.mappers.frames.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport
 from pvfiblets.mappers.picture.antialias_refinement import SAMPLES, Refinement
 from pvfiblets.mappers.picture.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.picture.overlays import Overlay

@@ -16,8 +16,7 @@ from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
 from pvfiblets.mappers.effects import resolve
-from pvfiblets.mappers.frames.scene import actors_in, items_of
-from pvfiblets.mappers.frames.windows import weak
+from pvfiblets.mappers.frames.scene import actors_in, items_of, weak
 
 if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkRenderer

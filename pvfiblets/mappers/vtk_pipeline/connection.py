@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from vtkmodules.vtkRenderingCore import vtkMapper
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 
-from pvfiblets.mappers.frames.windows import weak
+from pvfiblets.mappers.frames.scene import weak
 
 if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkPolyData

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any, cast
 from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from pvfiblets.mappers.frames.scene import actors_in, items_of, to_array, world_planes
-from pvfiblets.mappers.frames.windows import contexts_with, weak
+from pvfiblets.mappers.frames.scene import actors_in, items_of, to_array, weak, world_planes
+from pvfiblets.mappers.frames.windows import contexts_with
 
 if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkHardwareSelector, vtkRenderer, vtkRenderWindow

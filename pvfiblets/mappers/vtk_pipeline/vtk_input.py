@@ -13,7 +13,7 @@ from typing import Any
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from pvfiblets.mappers.frames.windows import weak
+from pvfiblets.mappers.frames.scene import weak
 
 
 class VtkInput(VTKPythonAlgorithmBase):

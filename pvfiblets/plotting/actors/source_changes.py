@@ -18,7 +18,7 @@ class SourceChanges:
     """The state in which a data set was added."""
 
     def __init__(self, source: Any, actor: Any) -> None:
-        from pvfiblets.mappers.frames.windows import weak
+        from pvfiblets.mappers.frames.scene import weak
 
         self._source, self._drawn = weak(source), _drawn_by(actor)
         self._times = _times(source)

@@ -21,8 +21,7 @@ from vtkmodules.vtkRenderingCore import vtkActor
 from pvfiblets.mappers import Colouring, FibletMapper, TubeMapper
 from pvfiblets.mappers.effects.line_tubes import Tubes
 from pvfiblets.mappers.effects.shading import Silhouette
-from pvfiblets.mappers.frames.scene import partly_shown, renderers_of, to_array
-from pvfiblets.mappers.frames.windows import weak
+from pvfiblets.mappers.frames.scene import partly_shown, renderers_of, to_array, weak
 from pvfiblets.mappers.picking import Layer
 from pvfiblets.streamlines import Streamlines
 
