@@ -65,27 +65,22 @@ void put_counts(uint vertices, uint primitives) {
 void put_varyings(uint primitive, Varyings varyings, ClippedSegment piece, vec3 from, vec3 to) {
     write_varyings(varyings, piece, from, to);
     uint at = mesh + HANDED_AT + 24u * primitive;
-    for (uint a = 0u; a < 4u; ++a) meshes[at + a] = varying_ids[a];
-    meshes[at + 4u] = floatBitsToUint(varying_first);
-    meshes[at + 22u] = varying_tangent;
-#if FEATURE_WIDE_LINES && !FEATURE_TUBES
-    for (uint a = 0u; a < 4u; ++a) meshes[at + 5u + a] = floatBitsToUint(varying_start[a]);
-    for (uint a = 0u; a < 4u; ++a) meshes[at + 9u + a] = floatBitsToUint(varying_end[a]);
-    meshes[at + 23u] = varying_onward;
-#elif !FEATURE_TUBES
-    for (uint a = 0u; a < 2u; ++a) meshes[at + 5u + a] = varying_cells[a];
-    for (uint a = 0u; a < 2u; ++a) meshes[at + 7u + a] = floatBitsToUint(varying_depths[a]);
-    meshes[at + 9u] = floatBitsToUint(varying_ratio);
+    for (uint a = 0u; a < 2u; ++a) meshes[at + a] = varying_ids[a];
+#if FEATURE_WIDE_LINES && (FEATURE_PEEL || FEATURE_GATHER_SLICES)
+    meshes[at + 2u] = varying_streamline;
+    meshes[at + 3u] = floatBitsToUint(varying_first);
 #endif
-#if FEATURE_CLIPPING && !FEATURE_TUBES
-    meshes[at + 13u] = varying_part;
+#if FEATURE_WIDE_LINES && !FEATURE_TUBES
+    for (uint a = 0u; a < 4u; ++a) meshes[at + 4u + a] = floatBitsToUint(varying_start[a]);
+    for (uint a = 0u; a < 4u; ++a) meshes[at + 8u + a] = floatBitsToUint(varying_end[a]);
+    meshes[at + 12u] = varying_onward;
+#elif !FEATURE_TUBES
+    for (uint a = 0u; a < 2u; ++a) meshes[at + 4u + a] = varying_cells[a];
+    for (uint a = 0u; a < 2u; ++a) meshes[at + 6u + a] = floatBitsToUint(varying_depths[a]);
 #endif
 #if FEATURE_TUBES || FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
-    for (uint a = 0u; a < 3u; ++a) meshes[at + 14u + a] = floatBitsToUint(varying_from[a]);
-    for (uint a = 0u; a < 3u; ++a) meshes[at + 17u + a] = floatBitsToUint(varying_to[a]);
-#endif
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_VOLUME
-    for (uint a = 0u; a < 2u; ++a) meshes[at + 20u + a] = floatBitsToUint(varying_values[a]);
+    for (uint a = 0u; a < 3u; ++a) meshes[at + 13u + a] = floatBitsToUint(varying_from[a]);
+    for (uint a = 0u; a < 3u; ++a) meshes[at + 16u + a] = floatBitsToUint(varying_to[a]);
 #endif
 }
 #include "fiblets/mesh/STAGE.glsl"
@@ -123,27 +118,22 @@ void main() {
     if (primitive >= meshes[mesh + COUNT]) return;
     uint vertex = mesh + 4u * meshes[mesh + INDICES + corners * primitive + corner];
     gl_Position = vec4(value(vertex), value(vertex + 1u), value(vertex + 2u), value(vertex + 3u));
-    varying_ids = uvec4(meshes[at], meshes[at + 1u], meshes[at + 2u], meshes[at + 3u]);
-    varying_first = value(at + 4u);
-    varying_tangent = meshes[at + 22u];
-#if FEATURE_WIDE_LINES && !FEATURE_TUBES
-    varying_start = vec4(value(at + 5u), value(at + 6u), value(at + 7u), value(at + 8u));
-    varying_end = vec4(value(at + 9u), value(at + 10u), value(at + 11u), value(at + 12u));
-    varying_onward = meshes[at + 23u];
-#elif !FEATURE_TUBES
-    varying_cells = uvec2(meshes[at + 5u], meshes[at + 6u]);
-    varying_depths = vec2(value(at + 7u), value(at + 8u));
-    varying_ratio = value(at + 9u);
+    varying_ids = uvec2(meshes[at], meshes[at + 1u]);
+#if FEATURE_WIDE_LINES && (FEATURE_PEEL || FEATURE_GATHER_SLICES)
+    varying_streamline = meshes[at + 2u];
+    varying_first = value(at + 3u);
 #endif
-#if FEATURE_CLIPPING && !FEATURE_TUBES
-    varying_part = meshes[at + 13u];
+#if FEATURE_WIDE_LINES && !FEATURE_TUBES
+    varying_start = vec4(value(at + 4u), value(at + 5u), value(at + 6u), value(at + 7u));
+    varying_end = vec4(value(at + 8u), value(at + 9u), value(at + 10u), value(at + 11u));
+    varying_onward = meshes[at + 12u];
+#elif !FEATURE_TUBES
+    varying_cells = uvec2(meshes[at + 4u], meshes[at + 5u]);
+    varying_depths = vec2(value(at + 6u), value(at + 7u));
 #endif
 #if FEATURE_TUBES || FEATURE_WIDE_LINES && FEATURE_CLIP_PLANES
-    varying_from = vec3(value(at + 14u), value(at + 15u), value(at + 16u));
-    varying_to = vec3(value(at + 17u), value(at + 18u), value(at + 19u));
-#endif
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_VOLUME
-    varying_values = vec2(value(at + 20u), value(at + 21u));
+    varying_from = vec3(value(at + 13u), value(at + 14u), value(at + 15u));
+    varying_to = vec3(value(at + 16u), value(at + 17u), value(at + 18u));
 #endif
 }
 """

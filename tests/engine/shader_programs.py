@@ -294,6 +294,14 @@ def _fiblets():
         kinds[f"compute {stage}"] = Kind(
             {"comp": f"fiblets/compute/{stage}.comp"}, never=("TEXTURE_DATA", "INT64_ATOMICS"), needs=needs
         )
+    for name, always, versions in (("textures", textured, (330, 410, NEWEST)), ("buffers", (), (NEWEST,))):
+        kinds[f"raster resolve, {name}"] = Kind(
+            {stage: f"fiblets/hardware_raster/resolve.{stage}" for stage in ("vert", "frag")},
+            versions,
+            always,
+            (*not_mesh, "ONE_SEGMENT", "SUBSAMPLES", *(() if always else ("TEXTURE_DATA",))),
+            RASTER,
+        )
     needs = {**FREE, "REGION_FIELDS": (("CLIP_REGION",),), "TUBES": ()}
     kinds["mesh open"] = Kind({"comp": "fiblets/mesh/open.comp"}, never=("TEXTURE_DATA",), needs=needs)
     kinds["pyramid"] = Kind({"comp": "culling/pyramid_reduce.comp"})

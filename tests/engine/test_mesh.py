@@ -55,15 +55,14 @@ def test_the_compiler_sees_every_stage(tmp_path):
     for stage in sources:
         broken = {**sources, stage: sources[stage].replace("void main() {", "void main() { nonsense();")}
         assert link(tmp_path, broken).returncode != 0
-    unmatched = {**sources, "frag": sources["frag"].replace("uvec4 varying_ids", "uvec3 varying_ids")}
-    assert link(tmp_path, unmatched).returncode != 0
 
 
 @pytest.mark.parametrize("kind", ["together", "serial"])
 @pytest.mark.parametrize("drawn", DRAWN)
 def test_outputs_are_within_what_opengl_promises(tmp_path, kind, drawn):
     """256 vertices, 512 primitives, 16 KiB of outputs and shared memory; as many as the shares need."""
-    features = ["DIRECTION", "LATTICE", "WIDE_LATTICE", "VALUES_ARC_LENGTH", *DRAWN[drawn]]
+    summed = ["GATHER", "GATHER_SLICES", "PAINTED", "VALUES_ARC_LENGTH"]
+    features = ["DIRECTION", "LATTICE", "WIDE_LATTICE", *summed, *DRAWN[drawn]]
     source = tmp_path / "stage.mesh"
     source.write_text(assemble(f"fiblets/mesh/{kind}.mesh", features, CONSTANTS))
     text = subprocess.run([glslang(), "-E", source], capture_output=True, text=True, check=True).stdout
@@ -74,7 +73,7 @@ def test_outputs_are_within_what_opengl_promises(tmp_path, kind, drawn):
     shared = sum(sizes[kind] for kind in re.findall(r"shared (\w+) \w+ *\[ *2u \* PREFIX_THREADS *\]", text))
     assert vertices <= 256
     assert primitives <= 512
-    assert handed >= 12
+    assert handed >= 11
     assert shared == (0 if kind == "serial" else 4 + 3 + 3 + 1)
     assert 16 * vertices + 4 * handed * primitives + 3 * primitives + 4 * 64 * shared <= 16384
     assert share * shares >= 60
@@ -205,11 +204,9 @@ def test_meshes_against_float64(gl, monkeypatch, fabricate, lines, camera, seria
             assert np.abs(at[-1] - np.floor(window[-1, :2])).max() < 0.7
         assert (vertices[:, 2:] == [0.0, 1.0]).all()
         handed = mesh[660 : 660 + 24 * count].reshape(count, 24)[::-1]
-        assert (handed[:, 0] == rank).all()
-        assert (handed[:, 2] == f).all()
-        assert (handed[:, 3] & 255).tolist() == list(range(count))
-        assert (handed[:, 4].copy().view("<f4") == start).all()
-        depths = handed[:, 7:9].copy().view("<f4")
+        assert (handed[:, 0] == f).all()
+        assert (handed[:, 1] & 255).tolist() == list(range(count))
+        depths = handed[:, 6:8].copy().view("<f4")
         assert np.abs(depths[:, 1] - window[1:, 2]).max() < 1e-5
         drawn += count
     assert drawn > 1000

@@ -1,5 +1,6 @@
 """The pipelines that OpenGL's rasteriser draws for: their pictures are those of the compute pipeline."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import moderngl
@@ -76,6 +77,34 @@ def test_a_made_up_brain(gl, camera, pipeline):
     for eye in ((0, -260, 60), (150, 150, 30)):
         for style in (FibletStyle(), FibletStyle(tolerance=0.0), FibletStyle(3.0)):
             compared(gl, fiblets, View(size, camera(size, eye=eye)), style, pipeline)
+
+
+@pytest.mark.parametrize("pipeline", ["tessellation", "geometry"])
+@pytest.mark.parametrize(
+    "style",
+    [FibletStyle(), FibletStyle(3.0, across=True, edges=True), FibletStyle(radius=0.4, across=True, edges=True)],
+    ids=["thin", "wide", "tubes"],
+)
+def test_pixels_show_what_compute_finds(gl, camera, style, pipeline):
+    """To the bit, edges and places across the line included: they are found once a pixel, as there."""
+    fiblets, view = compress(brain_streamlines(150, step=0.5, seed=4)), View(SIZE, camera(SIZE))
+    found = []
+    for name in (pipeline, "compute"):
+        renderer = FibletRenderer(gl, fiblets, pipeline=name)
+        buffer = renderer.render(view, replace(style, values="arc_length"))
+        picture = read(buffer)
+        more = [texture for texture in (buffer.across, buffer.edges) if texture is not None]
+        words = [np.frombuffer(texture.read(), f"u{texture.dtype[1]}") for texture in more]
+        found.append((picture, [word.reshape(SIZE[::-1])[picture.drawn] for word in words]))
+        renderer.release()
+    (picture, words), (expected, their_words) = found
+    assert set(differences(picture, expected)) <= {"position"}
+    places, values = np.moveaxis(picture.position[picture.drawn] - expected.position[picture.drawn], -1, 0)
+    assert not places.any()
+    assert np.abs(values).max() < 1e-4, "mm; compilers sum lengths in orders of their own"
+    assert len(words) == (0 if style == FibletStyle() else 2)
+    for ours, theirs in zip(words, their_words, strict=True):
+        assert np.array_equal(ours, theirs)
 
 
 @pytest.mark.every("value")
@@ -188,19 +217,20 @@ def test_two_phase_culling_changes_no_bit(gl, fabricate, random_lines, camera, w
     for number, view in enumerate(jumps(camera)):
         picture, expected = read(culled.render(view, style)), read(whole.render(view, style))
         assert not differences(picture, expected), f"picture {number}"
-    assert [p["name"] for p in culled.explain()["passes"]][-5:] == [
+    assert [p["name"] for p in culled.explain()["passes"]][-6:] == [
         "clear",
         "visible",
         "pyramid",
         "draw",
+        "resolve",
         "visibility_bits",
     ]
-    assert [p["name"] for p in whole.explain()["passes"]] == ["clear", "draw"]
+    assert [p["name"] for p in whole.explain()["passes"]] == ["clear", "draw", "resolve"]
     held = [{b["name"]: b["bytes"] for b in renderer.explain()["buffers"]} for renderer in (culled, whole)]
     pixels = SIZE[0] * SIZE[1]
-    assert held[0]["depth"] == 16 * pixels
+    assert held[0]["depth"] == 17 * pixels
     assert held[0]["visibility_bits"] == 1024 * -(-fiblets.n_fiblets // 1024)
-    assert held[1]["depth"] == 4 * pixels
+    assert held[1]["depth"] == 5 * pixels
     assert "visibility_bits" not in held[1]
     for renderer in (culled, whole):
         renderer.release()
@@ -330,10 +360,10 @@ def test_no_memory_for_a_picture_is_told(gl):
     blank = dict.fromkeys(("depth", "owner", "ids", "position", "across", "relief", "edges"))
     target = SimpleNamespace(size=SIZE, **blank)
 
-    def refuse(*_):
+    def refuse(*_, **__):
         raise moderngl.Error("out of memory")
 
-    short = SimpleNamespace(depth_texture=refuse)
+    short = SimpleNamespace(depth_texture=refuse, texture=refuse)
     with pytest.raises(EngineError, match="no memory for a picture of 320 x 240 pixels: out of memory"):
         RasterTarget(short, GLExtras(gl), target, True)
 

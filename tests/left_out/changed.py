@@ -11,9 +11,10 @@ MEASURING = "codec.arrays.decode_arrays, codec.decompress, codec.arrays.frame_ar
 HARDWARE = """
     -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
     -fiblets/compute/depth.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
-    -fiblets/compute/resolve_ties.comp, fiblets/hardware_raster/survivors.vert
+    -fiblets/compute/resolve_ties.comp, fiblets/hardware_raster/resolve.frag, fiblets/hardware_raster/resolve.vert,
+    fiblets/hardware_raster/survivors.vert
 """
-HARDWARE_PASSES = "-cull, -depth, -resolve_owner, -resolve_ties, -visible, draw"
+HARDWARE_PASSES = "-cull, -depth, -resolve_owner, -resolve_ties, -visible, draw, resolve"
 
 TUBES = What(
     ran=f"{HARDWARE}, fiblets/geometry/capsules.geom, fiblets/hardware_raster/capsule.frag",

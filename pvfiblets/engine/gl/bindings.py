@@ -88,7 +88,7 @@ GATHERING = Scope(
         "colours": 37, "gathered": 38, "slice_keys": 39, "paint_opacities": 40,
     },
 )  # fmt: skip
-FIBLET_ROUNDS = Scope("rounds of two-phase culling", {"first_round": 12, "seen": 13, "owner": 14})
+FIBLET_ROUNDS = Scope("rounds of two-phase culling", {"first_round": 12, "seen": 13, "owner": 14, "segment": 15})
 BETWEEN_ROUNDS = Scope("the pass between rounds", {"depth_key": 13, "owner": 14, "depth": 15})
 LAYER_COPY = Scope("copies of layers", {"depth": 12, "ids": 13, "position": 14, "across": 15})
 SAMPLE_LAYER = Scope(

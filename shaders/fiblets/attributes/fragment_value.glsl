@@ -10,10 +10,10 @@
 float value_at(uint segment, float t, float steps) {
     float at = t * steps, whole = floor(clamp(at, 0.0, max(steps - 1.0, 0.0)));
 #if FEATURE_VALUES_STORED
-    begin_values(varying_ids.z - chunk_first);
+    begin_values(varying_ids.x - chunk_first);
     return value_along(segment, t, uint(whole), at - whole);
 #elif FEATURE_VALUES_VOLUME
-    if (steps > 1.0) return value_along_capsule(varying_ids.z - chunk_first, steps, uint(whole), at - whole);
+    if (steps > 1.0) return value_along_capsule(varying_ids.x - chunk_first, steps, uint(whole), at - whole);
     return value_between(varying_values.x, varying_values.y, at);
 #elif FEATURE_VALUES_ARC_LENGTH
     return mix(varying_values.x, varying_values.y, t);

@@ -8,15 +8,6 @@
 
 layout(points) in;
 
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_VOLUME
-#if FEATURE_CLIPPING
-layout(line_strip, max_vertices = {{ cut_valued_line_vertices }}) out;
-const uint SHARE = {{ cut_valued_line_share }}u;
-#else
-layout(line_strip, max_vertices = {{ valued_line_vertices }}) out;
-const uint SHARE = {{ valued_line_share }}u;
-#endif
-#else
 #if FEATURE_CLIPPING
 layout(line_strip, max_vertices = {{ cut_line_vertices }}) out;
 const uint SHARE = {{ cut_line_share }}u;
@@ -24,40 +15,38 @@ const uint SHARE = {{ cut_line_share }}u;
 layout(line_strip, max_vertices = {{ line_vertices }}) out;
 const uint SHARE = {{ line_share }}u;
 #endif
-#endif
 
 #include "fiblets/segments/polyline.glsl"
 #include "fiblets/hardware_raster/thin.glsl"
 #include "fiblets/hardware_raster/write_varyings.glsl"
-#include "fiblets/attributes/pixel.glsl"
+#include "fiblets/attributes/values.glsl"
 #include "fiblets/geometry/share.glsl"
 
 void main() {
-    uint f, first;
-    if (!begin_share(f, first)) return;
+    uint f, first, end;
+    if (!begin_share(f, first, end)) return;
+    uint streamline = handed_streamline(f);
+    float first_point = handed_first(f);
     bool open = false;
-    vec3 to = walk_point;
-    next_point(1u);
-    uint end = min(polyline.count, first + SHARE);
     for (uint i = 1u; i <= end; ++i) {
-        vec3 from = to, delta = walk_delta;
-        to = walk_point;
+        vec3 from = walk_point;
         float before = value_of_point(i - 1u);
-        start_segment(i - 1u, to, delta, walk_ahead(i));
+        next_point(i);
+        start_values(i - 1u, walk_point, walk_delta, polyline.steps);
         if (i <= first) continue;
         ClippedSegment piece;
         bool start = i == 1u && polyline.begin, cap = i == polyline.count && polyline.end;
-        if (!mask_segment(i - 1u, start, cap) || !piece_of(from, to, start, cap, piece)) {
+        if (!mask_segment(i - 1u, start, cap) || !piece_of(from, walk_point, start, cap, piece)) {
             open = false;
             continue;
         }
-        Varyings varyings = Varyings(pixel_streamline, packed_tangents(tangents), chunk_first + f, pixel_first_point, i - 1u, polyline.steps,
+        Varyings varyings = Varyings(streamline, chunk_first + f, first_point, i - 1u, polyline.steps,
                                      vec2(before, value_of_point(i)), vec3(0.0));
         Thin line = thin_line(piece);
         for (int side = open && piece.t0 == 0.0 ? 1 : 0; side < 2; ++side) {
             if (side == 0) EndPrimitive();
             gl_Position = side == 0 ? line.first : line.last;
-            write_varyings(varyings, piece, from, to);
+            write_varyings(varyings, piece, from, walk_point);
             EmitVertex();
         }
         open = !piece.cap;

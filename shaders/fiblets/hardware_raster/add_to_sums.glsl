@@ -4,6 +4,8 @@
 #include "fiblets/gather/slices.glsl"
 #if FEATURE_PAINTED
 #include "fiblets/gather/paint.glsl"
+#include "fiblets/attributes/tangent.glsl"
+#include "fiblets/attributes/fragment_value.glsl"
 #endif
 
 layout(location = 0) out vec4 out_slice0;
@@ -13,16 +15,21 @@ layout(location = 2) out vec4 out_slice2;
 layout(location = 3) out vec4 out_slice3;
 #endif
 
-// s: position along the part in the window, beyond 0..1 in a wide line's caps; t: along the segment, of so many steps.
-void write_fragment(float s, uint key, uint segment, float t, float steps) {
+// s: position along the part in the window, beyond 0..1 in a wide line's caps; ratio: clip w at its start over that at its end.
+void write_fragment(float s, float ratio, uint key, uint segment) {
 #if FEATURE_WIDE_LINES
-    bool start = (varying_ids.w & 0x10000u) != 0u, cap = (varying_ids.w & 0x20000u) != 0u;
+    bool start = (varying_ids.y & 0x10000u) != 0u, cap = (varying_ids.y & 0x20000u) != 0u;
     if (s >= 1.0 && !cap || s <= 0.0 && !start) discard;
 #endif
-    int slice = slice_of(ivec2(gl_FragCoord.xy), key, varying_ids.z);
+    int slice = slice_of(ivec2(gl_FragCoord.xy), key, varying_ids.x);
     if (slice < 0) discard;
 #if FEATURE_PAINTED
-    vec4 adds = painted(varying_ids.x, unpacked_tangent(varying_tangent), value_at(segment, t, steps));
+    float t = clamp(s * ratio / max(1.0 - s + s * ratio, 1e-30), 0.0, 1.0);
+#if FEATURE_CLIPPING && !FEATURE_TUBES
+    t = mix(float(varying_part & 0xFFFFu), float(varying_part >> 16u), t) / 65535.0;
+#endif
+    float steps = float((varying_ids.y >> 8u) & 255u);
+    vec4 adds = painted(varying_streamline, unpacked_tangent(varying_tangent), value_at(segment, t, steps));
 #else
     vec4 adds = vec4(0.0, 0.0, 0.0, 1.0);
 #endif

@@ -14,15 +14,7 @@
 #if FEATURE_TUBES
 #include "fiblets/segments/line_tube.glsl"
 #endif
-#if FEATURE_EDGES
-#include "fiblets/segments/edges.glsl"
-#endif
-
 #if FEATURE_TUBES
-#if FEATURE_CROSS_LINE
-#include "frame/tangent.glsl"
-#endif
-
 void main() {
     precise vec4 c0 = to_homogeneous(varying_from), c1 = to_homogeneous(varying_to);
 #if FEATURE_CLIP_REGION
@@ -30,20 +22,14 @@ void main() {
 #else
     vec3 ahead = vec3(0.0);
 #endif
-    Tube body = tube_of(varying_from, varying_to, c0, (varying_ids.w & 0x10000u) != 0u, (varying_ids.w & 0x20000u) != 0u, ahead);
+    Tube body = tube_of(varying_from, varying_to, c0, (varying_ids.y & 0x10000u) != 0u, (varying_ids.y & 0x20000u) != 0u, ahead);
     Hit hit;
 #if FEATURE_PEEL || FEATURE_GATHER_SLICES
     Outline outline;
     if (!outline_of(c0, c1, outline) || !tube_at(body, c0, outline, gl_FragCoord.xy, hit)) discard;
-    peel_segment(outline.a.xy, outline.b.xy, outline.reach, float((varying_ids.w >> 8u) & 255u));
+    peel_segment(outline.a.xy, outline.b.xy, outline.reach, float((varying_ids.y >> 8u) & 255u));
 #else
     if (!tube_found(body, c0, c1, gl_FragCoord.xy, hit)) discard;
-#endif
-#if FEATURE_CROSS_LINE
-    out_across = packed_direction(smooth_normal(hit, tangent_between(varying_tangents(), hit.t)));
-#endif
-#if FEATURE_EDGES
-    out_edges = tube_edges(body, c0, c1, gl_FragCoord.xy, hit);
 #endif
     shade(hit.t, 1.0, hit.z);
 }
@@ -71,31 +57,21 @@ bool brush_kept(float s, vec2 away) {
 void main() {
     vec2 run = varying_end.xy - varying_start.xy, centre = gl_FragCoord.xy - varying_start.xy;
 #if FEATURE_LINE_ENDS
-    bool start = (varying_ids.w & 0x10000u) != 0u, cap = (varying_ids.w & 0x20000u) != 0u;
+    bool start = (varying_ids.y & 0x10000u) != 0u, cap = (varying_ids.y & 0x20000u) != 0u;
     float s = end_at(ClippedSegment(varying_start, varying_end, 0.0, 1.0, start, cap, 0.0, false), centre, run, half_line_width);
     if (s < 0.0) discard;
     vec2 away = centre - s * run;
 #else
-    float foot = dot(centre, run) / max(dot(run, run), 1e-12);
+    float foot = dot(centre, run) * (1.0 / max(dot(run, run), 1e-12));
     precise float s = clamp(foot, 0.0, 1.0);
     vec2 away = centre - s * run;
-    if (foot < 0.0 && (varying_ids.w & 0x10000u) == 0u || dot(away, away) > half_line_width * half_line_width) discard;
+    if (foot < 0.0 && (varying_ids.y & 0x10000u) == 0u || dot(away, away) > half_line_width * half_line_width) discard;
     if (foot > 1.0 && beyond_joint(unpacked_onward(varying_onward), centre - run)) discard;
 #endif
 #if FEATURE_CLIP_PLANES
     if (!brush_kept(s, away)) discard;
 #endif
     precise float depth = varying_start.z + (varying_end.z - varying_start.z) * s;
-#if FEATURE_CROSS_LINE
-    out_across = clamp(dot(vec2(-run.y, run.x), centre) / (half_line_width * sqrt(max(dot(run, run), 1e-12))), -1.0, 1.0);
-#endif
-#if FEATURE_EDGES
-#if FEATURE_LINE_ENDS
-    out_edges = capsule_edges(away, vec2(0.0), half_line_width);
-#else
-    out_edges = capsule_edges(centre, run, half_line_width);
-#endif
-#endif
     shade(s, varying_start.w / varying_end.w, depth);
 }
 #endif

@@ -19,8 +19,6 @@
 #endif
 #include "fiblets/hardware_raster/varyings.glsl"
 #include "fiblets/segments/peel.glsl"
-#include "fiblets/attributes/tangent.glsl"
-#include "fiblets/attributes/fragment_value.glsl"
 
 #if FEATURE_GATHER
 #include "fiblets/hardware_raster/add_to_sums.glsl"
@@ -40,19 +38,17 @@ void shade(float s, float ratio, float depth) {
 #if FEATURE_CLIP_REGION
     if (!region_keeps(ivec2(gl_FragCoord.xy), z)) discard;
 #endif
-    uint key = depth_key(z), segment = varying_ids.w & 255u;
+    uint key = depth_key(z), segment = varying_ids.y & 255u;
 #if FEATURE_SECOND_ROUND
     uvec2 before = texelFetch(first_round, ivec2(gl_FragCoord.xy), 0).xy;
-    if (key == before.x && varying_ids.z > before.y) discard;
+    if (key == before.x && varying_ids.x > before.y) discard;
 #endif
-    float t = clamp(s * ratio / max(1.0 - s + s * ratio, 1e-30), 0.0, 1.0), steps = float((varying_ids.w >> 8u) & 255u);
-    begin_peel(varying_ids.x, varying_first);
-#if FEATURE_WIDE_LINES && !FEATURE_TUBES
-    peel_segment(varying_start.xy, varying_end.xy, half_line_width, steps);
+#if FEATURE_WIDE_LINES && (FEATURE_PEEL || FEATURE_GATHER_SLICES)
+    begin_peel(varying_streamline, varying_first);
+#if !FEATURE_TUBES
+    peel_segment(varying_start.xy, varying_end.xy, half_line_width, float((varying_ids.y >> 8u) & 255u));
+#endif
 #endif
     if (!behind_layers(ivec2(gl_FragCoord.xy), key) || !new_surface(ivec2(gl_FragCoord.xy), segment)) discard;
-#if FEATURE_CLIPPING && !FEATURE_TUBES
-    t = mix(float(varying_part & 0xFFFFu), float(varying_part >> 16u), t) / 65535.0;
-#endif
-    write_fragment(s, key, segment, t, steps);
+    write_fragment(s, ratio, key, segment);
 }

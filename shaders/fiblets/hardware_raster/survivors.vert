@@ -8,13 +8,24 @@
 #version 430
 
 #include "fiblets/hardware_raster/cull.glsl"
+#if FEATURE_CLIPPING && !FEATURE_WIDE_LINES
+#include "fiblets/compute/classes.glsl"
+#endif
 
 uniform uint shares;   // vertices per fiblet
 
 flat out uint shown;   // 0: nothing; else one more than the vertex
+#if FEATURE_CLIPPING && !FEATURE_WIDE_LINES
+flat out uint uncut;   // whether none of its segments can be cut
+#endif
 
 void main() {
     uint vertex = uint(gl_VertexID);
     shown = survives(vertex / shares) ? vertex + 1u : 0u;
+#if FEATURE_CLIPPING && !FEATURE_WIDE_LINES
+    uint which = 2u;
+    bool inside = shown != 0u && can_show(vertex / shares, capsule_of(vertex / shares), which) && (which == 0u || which == 3u);
+    uncut = inside ? 1u : 0u;
+#endif
     gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
 }

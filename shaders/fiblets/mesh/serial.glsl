@@ -2,11 +2,12 @@
 // 4.5.3): the pipeline `mesh-serial`, for comparison with fiblets/mesh/together.glsl.
 
 #include "fiblets/segments/polyline.glsl"
-#include "fiblets/attributes/pixel.glsl"
+#include "fiblets/attributes/values.glsl"
+#include "fiblets/hardware_raster/handed.glsl"
 #include "fiblets/mesh/draw_segment.glsl"
 
 void draw_share(uint f, uint share) {
-    begin_pixels(f);
+    begin_values(f);
     begin_polyline(f);
     uint first = (SHARES - 1u - share) * SHARE, end = min(polyline.count, first + SHARE);
     if (first >= end) {
@@ -14,6 +15,8 @@ void draw_share(uint f, uint share) {
         return;
     }
     put_counts(vertices_of(end - first), PRIMITIVES * (end - first));
+    uint streamline = handed_streamline(f);
+    float first_point = handed_first(f);
     vec3 to = walk_point;
     next_point(1u);
     for (uint i = 0u; i < end; ++i) {
@@ -21,10 +24,10 @@ void draw_share(uint f, uint share) {
         to = walk_point;
         float before = value_of_point(i);
         vec3 ahead = walk_ahead(i + 1u);
-        start_segment(i, to, delta, ahead);
+        start_values(i, to, delta, polyline.steps);
         if (i < first) continue;
-        Varyings varyings = Varyings(pixel_streamline, packed_tangents(tangents), chunk_first + f, pixel_first_point, i, polyline.steps,
-                                     vec2(before, value_of_point(i + 1u)), goes_on(i + 1u) ? ahead : vec3(0.0));
+        Varyings varyings = Varyings(streamline, chunk_first + f, first_point, i, polyline.steps, vec2(before, value_of_point(i + 1u)),
+                                     goes_on(i + 1u) ? ahead : vec3(0.0));
         draw_segment(i - first, end - first, varyings, from, to, i == 0u && polyline.begin, i + 1u == polyline.count && polyline.end);
     }
 }

@@ -2,17 +2,16 @@
 // 5): all decode it together (fiblets/decode/parallel.glsl), then every invocation writes two of its segments, the one to the next
 // fiblet's first point included.
 //
-// What a walk along the fiblet would carry from one segment to the next is found for each of them here: the tangent of a
-// segment of no length, the length of all before, the turns to its neighbours.
+// What a walk along the fiblet would carry from one segment to the next is found for each of them here: the length of all before, the
+// next one's run.
 //
 // From far enough a fiblet is one segment, between the ends of its capsule, and is not decoded (section 3.4.4).
 
 #include "fiblets/decode/parallel.glsl"
 #include "culling/bounds.glsl"
 #include "fiblets/data/point_mask.glsl"
-#include "fiblets/attributes/streamline_index.glsl"
 #include "fiblets/attributes/neighbours.glsl"
-#include "fiblets/attributes/tangent.glsl"
+#include "fiblets/hardware_raster/handed.glsl"
 #include "fiblets/data/values.glsl"
 #if FEATURE_VALUES_VOLUME
 #include "fiblets/data/volume.glsl"
@@ -31,9 +30,9 @@ struct Group {
     vec3 far_to;
     float unit;      // mm that decoded steps are in units of: the step of a direction fiblet, or the lattice's edge
     bool moves;      // of direction codes
-    vec3 behind;     // runs of the segment before its first point, and of the one after its last
-    vec3 beyond;
-    bool on;         // whether the line goes on there as it does here
+#if FEATURE_WIDE_LINES
+    vec3 beyond;     // the run after its last segment, where the line goes on there as it does here
+#endif
 };
 
 Group group;
@@ -57,20 +56,13 @@ vec3 delta_of(uint i) {
     return prefix_point[i + 1u] - prefix_point[i];
 }
 
-uvec2 tangents_of_segment(uint segment) {
-    vec3 before = group.behind, after = segment + 1u == group.count ? group.beyond : delta_of(segment + 1u);
-    for (uint i = segment; i > 0u; --i) {
-        before = delta_of(i - 1u);
-        if (before != vec3(0.0)) break;
-    }
-    bool leads = segment + 1u == group.count && !group.whole;
-    return packed_tangents(tangents_of(unit_or_none(before), unit_or_none(delta_of(segment)), unit_or_none(after), leads));
-}
-
 // The run of the segment after one, where the line goes on as it says.
 vec3 ahead_of(uint segment) {
-    if (segment + 1u < group.count) return delta_of(segment + 1u);
-    return group.on ? group.beyond : vec3(0.0);
+#if FEATURE_WIDE_LINES
+    return segment + 1u < group.count ? delta_of(segment + 1u) : group.beyond;
+#else
+    return vec3(0.0);
+#endif
 }
 
 #if FEATURE_VALUES_ARC_LENGTH
@@ -118,8 +110,13 @@ void draw_share(uint f, uint share) {
     begin_point_mask(f);
     uvec3 words = decoding_words(f);
     uint last = fiblet_last(words);
-    group = Group(f, last, 0u, begins(f), ends(f), false, 1.0, vec3(0.0), vec3(0.0), 0.0, fiblet_kind(words) == KIND_DIRECTION, vec3(0.0), vec3(0.0), false);
-    if (group.end && last == 0u) group.spans = 0.0;
+    group.f = f;
+    group.last = last;
+    group.begin = begins(f);
+    group.end = ends(f);
+    group.whole = false;
+    group.moves = fiblet_kind(words) == KIND_DIRECTION;
+    group.spans = group.end && last == 0u ? 0.0 : 1.0;
     group.count = last + (group.end && last > 0u ? 0u : 1u);
     group.unit = group.moves ? step_length(words) : lattice_edge * exp2(-float(fiblet_cap(words)));
 #if FEATURE_LEVEL_OF_DETAIL
@@ -138,24 +135,17 @@ void draw_share(uint f, uint share) {
         return;
     }
     put_counts(vertices_of(end - first), PRIMITIVES * (end - first));
-    if (!group.whole && group.spans == 0.0 && !group.begin && f > 0u) {  // a single point: the segment that leads to it
-        decode_together(f - 1u);
-        group.behind = anchor_local(f) - prefix_point[fiblet_last(decoding_words(f - 1u))];
-    } else {
-        group.behind = direction_before(f, group.whole);
-    }
-    group.beyond = direction_after(f, group.whole);
 #if FEATURE_WIDE_LINES
-    group.on = alike_after(f, group.whole);
+    group.beyond = alike_after(f, group.whole) ? direction_after(f, group.whole) : vec3(0.0);
 #endif
     if (!group.whole) decode_together(f);
 #if FEATURE_VALUES_ARC_LENGTH
     if (!group.whole) add_lengths();
 #endif
-    uint streamline = streamline_of(f);
-    float first_point = float(points_before(f));
+    uint streamline = handed_streamline(f);
+    float first_point = handed_first(f);
     for (uint i = first + gl_LocalInvocationIndex; i < end; i += PREFIX_THREADS) {
-        Varyings varyings = Varyings(streamline, tangents_of_segment(i), chunk_first + f, first_point, i, group.spans, values_of(i), ahead_of(i));
+        Varyings varyings = Varyings(streamline, chunk_first + f, first_point, i, group.spans, values_of(i), ahead_of(i));
         bool start = i == 0u && group.begin, cap = i + 1u == group.count && group.end;
         draw_segment(i - first, end - first, varyings, point_of(i), point_of(i + 1u), start, cap);
     }

@@ -48,15 +48,10 @@ uint tube_edges(Tube t, vec4 c0, vec4 c1, vec2 pixel, Hit hit) {
 #endif
 
 #if !(FEATURE_TUBES || FEATURE_WIDE_LINES)
-// Where in their pixels the ends of a segment lie, as exact as the 8 bits that each is handed on in.
+// Where in their pixels the ends of a segment lie.
 vec4 parts_of(ClippedSegment piece) {
     vec4 at = vec4(in_picture(piece.a), in_picture(piece.b));
-    return floor((at - floor(at)) * 256.0) / 256.0;
-}
-
-uint packed_parts(ClippedSegment piece) {
-    uvec4 parts = uvec4(parts_of(piece) * 256.0);
-    return parts.x | (parts.y << 8u) | (parts.z << 16u) | (parts.w << 24u);
+    return at - floor(at);
 }
 
 // first, last: pixels of the segment's ends; at: this one, from the first; parts: where in their pixels the ends lie. No branch: it
@@ -72,6 +67,4 @@ uint thin_edges(ivec2 first, ivec2 last, vec2 at, vec4 parts, bool start, bool c
     uint end = begins && ends ? 7u : begins || ends ? (turned == ends ? third : third + 3u) : 0u;
     return packed_edges(turned ? vec2(along.y, -along.x) : vec2(-along.y, along.x), 0.5 - abs(left), 1.0, end);
 }
-
-vec4 unpacked_parts(uint word) { return vec4((uvec4(word) >> uvec4(0u, 8u, 16u, 24u)) & 255u) / 256.0; }
 #endif

@@ -1,22 +1,19 @@
-// Pipeline `tessellation`, wide lines: one end of a segment, for fiblets/tessellation/capsules.geom to make a rectangle of.
+// Pipeline `tessellation`, wide lines: a point, for fiblets/tessellation/capsules.geom to make a rectangle between it and the one before.
 
 #version 430
 
 #include "fiblets/tessellation/segment.glsl"
 
-out vec4 end_point;
-flat out uvec4 segment_ids;     // streamline; tangent at the start; fiblet; segment, steps in bits 8 to 15, start and cap in bits 16 and 17; bit 18: nothing
-flat out uint segment_tangent;  // at the end
+out vec4 end_point;             // local mm; w: per-point value
+flat out uvec4 segment_ids;     // fiblet; segment, steps in bits 8 to 15, start and cap in bits 16 and 17; bit 18: nothing; streamline; first point
 flat out vec3 segment_ahead;    // the next segment's run
-flat out float segment_first;
 
 void main() {
     Segment segment = this_segment();
-    end_point = at_start ? segment.from : segment.to;
-    segment_ids = uvec4(patch_ids.x, segment.tangents.x, patch_ids.y, segment.index | (uint(segment.steps) << 8u)
-                        | (segment.start ? 0x10000u : 0u) | (segment.cap ? 0x20000u : 0u) | (segment.drawn ? 0u : 0x40000u));
-    segment_tangent = segment.tangents.y;
-    segment_ahead = segment.index + 1u == (patch_ids.z & 255u) ? patch_beyond : delta_of(segment.index + 1u);
-    segment_first = patch_first;
+    uint next = segment.index + 1u;
+    end_point = at_start ? vec4(segment.from, value_of(segment.index)) : vec4(segment.to, value_of(next));
+    segment_ids = uvec4(patch_ids.x, segment.index | (uint(segment.steps) << 8u)
+                        | (segment.start ? 0x10000u : 0u) | (segment.cap ? 0x20000u : 0u) | (segment.drawn ? 0u : 0x40000u), patch_ids.zw);
+    segment_ahead = next == (patch_ids.y & 255u) ? patch_beyond : point_of(next + 1u) - segment.to;
     gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
 }

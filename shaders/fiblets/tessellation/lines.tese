@@ -9,13 +9,13 @@
 void main() {
     Segment segment = this_segment();
     ClippedSegment piece;
-    if (!segment.drawn || !piece_of(segment.from.xyz, segment.to.xyz, segment.start, segment.cap, piece)) {
+    if (!segment.drawn || !piece_of(segment.from, segment.to, segment.start, segment.cap, piece)) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside, at both ends
         return;
     }
     Thin line = thin_line(piece);
     gl_Position = at_start ? line.first : line.last;
-    Varyings varyings = Varyings(patch_ids.x, segment.tangents, patch_ids.y, patch_first, segment.index, segment.steps,
-                           vec2(segment.from.w, segment.to.w), vec3(0.0));
-    write_varyings(varyings, piece, segment.from.xyz, segment.to.xyz);
+    Varyings varyings = Varyings(patch_ids.z, patch_ids.x, uintBitsToFloat(patch_ids.w), segment.index, segment.steps,
+                                 vec2(value_of(segment.index), value_of(segment.index + 1u)), vec3(0.0));
+    write_varyings(varyings, piece, segment.from, segment.to);
 }

@@ -15,10 +15,8 @@ VISIBILITY_WORDS = 7
 LIST_SHARE = 8
 """A list has room for a chunk's fiblets divided by this."""
 
-SHARES = {"line": 60, "valued_line": 30, "cut_line": 30, "cut_valued_line": 20, "capsule": 12, "valued_capsule": 10,
-          "cut_capsule": 9}
-VERTICES = {"line": 61, "valued_line": 31, "cut_line": 60, "cut_valued_line": 40, "capsule": 48, "valued_capsule": 40,
-            "cut_capsule": 36}
+SHARES = {"line": 60, "cut_line": 30, "capsule": 15, "painted_capsule": 12, "cut_capsule": 9}
+VERTICES = {"line": 61, "cut_line": 61, "capsule": 60, "painted_capsule": 48, "cut_capsule": 36}
 
 THREADS = 32
 """Invocations of a mesh stage's work group: a warp, as in the paper."""

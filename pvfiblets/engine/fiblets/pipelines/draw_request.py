@@ -53,8 +53,13 @@ class DrawRequest:
     @property
     def wide(self) -> tuple[str, ...]:
         """``WIDE_LINES``, if they are; what tubes, ends, and places across, ask of drawing programs goes along."""
+        return (*self.brush, *self.across)
+
+    @property
+    def brush(self) -> tuple[str, ...]:
+        """Features that decide which pixels lines take."""
         wide = ("WIDE_LINES",) if self.line_width > 0.0 or self.tubes else ()
-        return (*wide, *self.tubes, *self.ends, *self.across)
+        return (*wide, *self.tubes, *self.ends)
 
     @property
     def extra(self) -> tuple[str, ...]:

@@ -4,19 +4,17 @@ Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/fiblets/
 ``hardware_raster`` and ``segments``.
 
 Budget of a geometry stage: OpenGL promises 256 vertices and 1024 components of all vertices together. With the
-components of ``shaders/fiblets/hardware_raster/varyings.glsl``, with or without edges and per-point values:
+components of ``shaders/fiblets/hardware_raster/varyings.glsl``, of the nearest lines and of lines that are added up:
 
-==============================  ==========  ==============  =======================================================
-drawn                           components  vertices        segments of a share
-==============================  ==========  ==============  =======================================================
-thin, uncut                     16          1024 // 16: 64  60: all of them, by 61 vertices
-thin, uncut, with values        18          1024 // 18: 56  30
-thin, may be cut                17          1024 // 17: 60  30: every segment may be a strip of its own
-thin, may be cut, with values   19          1024 // 19: 53  20
-wide                            20          1024 // 20: 51  12: four vertices each, 60 in five shares
-wide, with values               22          1024 // 22: 46  10: 60 in six shares
-wide, caller's planes, either   28          1024 // 28: 36  9: 60 in seven shares
-==============================  ==========  ==============  =======================================================
+===========================  ==============  ==============  =========================================================
+drawn                        components      vertices        segments of a share
+===========================  ==============  ==============  =========================================================
+thin, uncut                  10; 15 summed   1024 // 15: 68  60: all of them, by 61 vertices
+thin, may be cut             10; 16 summed   1024 // 16: 64  30: each may be a strip of its own; 60 where nothing is cut
+wide, tubes                  15; 17 layered  1024 // 17: 60  15: four vertices each, 60 in four shares
+wide, tubes, summed          at most 21      1024 // 21: 48  12: 60 in five shares
+wide, caller's planes        at most 27      1024 // 27: 37  9: 60 in seven shares
+===========================  ==============  ==============  =========================================================
 
 A fiblet is drawn in several shares, depending on its segments; every share walks along the fiblet from its first point.
 """
@@ -31,9 +29,6 @@ from ....codec.layout import MAX_POINTS
 from .constants import SHARES
 from .draw_request import DrawRequest
 from .textured import TexturedPipeline
-
-_HANDED_OVER = {"VALUES_ARC_LENGTH", "VALUES_VOLUME"}
-"""Values that vertices carry; of a stored one fragments look up the codes."""
 
 
 class GeometryPipeline(TexturedPipeline):
@@ -52,9 +47,9 @@ class GeometryPipeline(TexturedPipeline):
 
     def _shares(self, request: DrawRequest) -> int:
         # The geometry stages choose by the same features.
-        valued = "valued_" if _HANDED_OVER.intersection(request.values) else ""
         if request.wide:
-            share = SHARES["cut_capsule" if request.planes else f"{valued}capsule"]
+            painted = "painted_" if "PAINTED" in request.gathering else ""
+            share = SHARES["cut_capsule" if request.planes else f"{painted}capsule"]
         else:
-            share = SHARES[f"cut_{valued}line" if request.clipping else f"{valued}line"]
+            share = SHARES["cut_line" if request.clipping else "line"]
         return -(-MAX_POINTS // share)

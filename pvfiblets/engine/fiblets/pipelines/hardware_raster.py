@@ -7,10 +7,12 @@ clear            empties depth and owners
 visible          two-phase culling: draws fiblets that the last picture showed, or that probably show now
 pyramid          two-phase culling: makes the pyramid of that depth, and keeps the owners of pixels
 draw             draws the others; without two-phase culling, all
+resolve          finds streamline, tangent, place and value of each pixel, of the fiblet and segment that it shows
 visibility_bits  two-phase culling: notes, for the next picture, which fiblets own a pixel
 ===============  ===============================================================================================
 
-The G-buffer's textures are colour attachments, and a depth buffer of float32 decides which fragment is nearest. OpenGL
+Lines are drawn into depth, fiblet and segment, 13 bytes a fragment with a depth buffer of float32, which decides which
+fragment is nearest; a full-screen pass finds all else (``shaders/fiblets/hardware_raster/varyings.glsl``). OpenGL
 draws in order, fiblet by fiblet, and a fragment must be nearer than the pixel's depth: of two at the same depth the
 fiblet with the smaller index stays. The second round comes later than its indices:
 ``shaders/fiblets/hardware_raster/between.frag`` and ``shade.glsl`` see to it that the picture is the same
@@ -48,7 +50,7 @@ class Memory:
 
 
 class RasterTarget:
-    """A G-buffer's textures as attachments, with a depth buffer."""
+    """A G-buffer's textures as attachments, with segments and a depth buffer."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, target: GBuffer, two_rounds: bool) -> None:
         self.target = target
@@ -56,18 +58,24 @@ class RasterTarget:
         self._things: list[moderngl.Texture | moderngl.Framebuffer] = []
         self.kept: moderngl.Texture | None = None  # rg32ui: depth key and owner after the first round
         self.across, self.edges = target.across, target.edges
-        colours = [target.depth, target.owner, target.ids, target.position]
-        colours += [texture for texture in (target.across, target.edges) if texture is not None]
+        resolved = [target.ids, target.position]
+        resolved += [texture for texture in (target.across, target.edges) if texture is not None]
         try:
+            self.segment = self._keep(ctx.texture(target.size, 1, dtype="u1"))
+            self.segment.filter = moderngl.NEAREST, moderngl.NEAREST
+            colours = [target.depth, target.owner, self.segment]
             self.depth = self._keep(depth_texture(ctx, gl, target.size))
             # Framebuffers of the two rounds; the same without two rounds.
             self.first = self.second = self._keep(ctx.framebuffer(colours, self.depth))
+            later = self.depth
             if two_rounds:
                 later = self._keep(depth_texture(ctx, gl, target.size))
                 self.kept = self._keep(ctx.texture(target.size, 2, dtype="u4"))
                 self.kept.filter = moderngl.NEAREST, moderngl.NEAREST
                 self.second = self._keep(ctx.framebuffer(colours, later))
                 self.between = self._keep(ctx.framebuffer([self.kept], later))
+            self.resolved = self._keep(ctx.framebuffer(resolved, later))
+            self.resolved.depth_mask = False
         except moderngl.Error as error:
             self.release()
             width, height = target.size
@@ -87,7 +95,7 @@ class RasterTarget:
     def nbytes(self) -> int:
         """Bytes of GPU memory beside the G-buffer's."""
         width, height = self.target.size
-        return width * height * (4 if self.kept is None else 16)
+        return width * height * (5 if self.kept is None else 17)
 
     def release(self) -> None:
         """Give everything back, but for the G-buffer; twice is harmless."""
@@ -169,6 +177,7 @@ class RasterPipeline(abc.ABC):
         self._target: RasterTarget | None = None
         self._seen: SeenTexture | None = None
         self._arrays: dict[moderngl.Program, moderngl.VertexArray | None] = {}
+        self._resolving: dict[moderngl.Program, moderngl.VertexArray] = {}
 
     @property
     def buffers(self) -> dict[str, Memory]:
@@ -180,9 +189,12 @@ class RasterPipeline(abc.ABC):
     def _stages(self, request: DrawRequest) -> Mapping[str, str]:
         """Files of the program's stages."""
 
+    def _prepare(self, program: moderngl.Program) -> None:  # noqa: B027 - nothing where bindings stand in the sources
+        """Set the samplers of a new program for :meth:`_bind_data`."""
+
     @abc.abstractmethod
-    def _prepare(self, program: moderngl.Program) -> None:
-        """Set the samplers and constants of a new program."""
+    def _bind_data(self, chunk: Chunk) -> None:
+        """Bind a chunk's data."""
 
     def _array(self, program: moderngl.Program) -> moderngl.VertexArray | None:
         """Return what a program draws with, none where it needs none."""
@@ -212,6 +224,10 @@ class RasterPipeline(abc.ABC):
             with passes.timed("draw"):
                 target.second.use()
                 self._round(request, ("SECOND_ROUND",) if two_rounds else ())
+            with passes.timed("resolve"):
+                target.resolved.use()
+                self._resolve(request, target)
+                target.second.use()  # which writes depth again
             if self._seen is not None and two_rounds:
                 with passes.timed("visibility_bits"):
                     self._seen.update(request.target)
@@ -272,28 +288,44 @@ class RasterPipeline(abc.ABC):
         for index, chunk in enumerate(request.chunks):
             chunk.bind_block()
             request.kept.bind_chunk(index)
+            self._bind_data(chunk)
             self._draw(array, program, chunk, request)
+
+    def _resolve(self, request: DrawRequest, target: RasterTarget) -> None:
+        """Find what pixels show beside their depth, chunk by chunk."""
+        data = [feature for feature in self.features if feature == "TEXTURE_DATA"]
+        clipping = ("CLIPPING", "CLIPPING_DEPTH") if request.clipping else ()
+        drawn = *request.wide, *request.extra, *request.detail, *clipping, *request.cutting
+        features = [*data, *request.decoding, *request.values, *drawn]
+        stages = {stage: f"fiblets/hardware_raster/resolve.{stage[:4]}" for stage in ("vertex", "fragment")}
+        program = self._programs.render(stages, features)
+        if program not in self._resolving:
+            self._resolving[program] = self._ctx.vertex_array(program, [])
+            self._prepare(program)
+        array = self._resolving[program]
+        for name, texture in (("owner", target.target.owner), ("segment", target.segment)):
+            texture.use(FIBLET_ROUNDS[name])
+            program[f"shown_{name}"] = FIBLET_ROUNDS[name]
+        request.kept.bind(program)
+        self._ctx.enable_only(moderngl.DEPTH_TEST)
+        self._ctx.depth_func = ">"  # the far plane, where a line lies before it
+        for index, chunk in enumerate(request.chunks):
+            chunk.bind_block()
+            request.kept.bind_chunk(index)
+            self._bind_data(chunk)
+            array.render(moderngl.TRIANGLES, vertices=3)
 
     def _program(self, request: DrawRequest, features: Sequence[str]) -> moderngl.Program:
         """Return a round's program."""
         return self._programs.render(self._stages(request), [*self._features(request), *features])
 
     def _features(self, request: DrawRequest) -> list[str]:
-        """Features of a picture's programs."""
+        """Features of programs that draw lines: of the nearest, none that tells where they are and what they show."""
         culling = (request.occlusion.feature,) if request.occlusion is not None else ()
         clipping = ("CLIPPING", "CLIPPING_DEPTH") if request.clipping else ()
-        every = (
-            *request.decoding,
-            *request.values,
-            *request.wide,
-            *request.extra,
-            *request.detail,
-            *clipping,
-            *request.planes,
-            *request.culling,
-        )
-        every = (*every, *request.peeling, *request.gathering)
-        return [*self.features, *every, *culling]
+        values = request.values if "PAINTED" in request.gathering else ()
+        every = *request.decoding, *values, *request.brush, *request.detail, *clipping, *request.planes
+        return [*self.features, *every, *request.culling, *request.peeling, *request.gathering, *culling]
 
     def _bind(self, program: moderngl.Program, request: DrawRequest, features: Sequence[str]) -> None:
         """Bind what a round's program looks at, and tell it where."""
@@ -329,10 +361,11 @@ class RasterPipeline(abc.ABC):
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
-        for array in self._arrays.values():
+        for array in (*self._arrays.values(), *self._resolving.values()):
             if array is not None:
                 array.release()
         self._arrays.clear()
+        self._resolving.clear()
         if self._target is not None:
             self._target.release()
             self._target = None

@@ -90,8 +90,8 @@ class MeshPipeline(RasterPipeline):
             "fragment": "fiblets/hardware_raster/capsule.frag" if request.wide else "fiblets/hardware_raster/line.frag",
         }
 
-    def _prepare(self, program: Any) -> None:
-        """Do nothing: bindings stand in the sources."""
+    def _bind_data(self, chunk: Chunk) -> None:
+        chunk.bind_storage()
 
     def _features(self, request: DrawRequest) -> list[str]:
         return [*super()._features(request), *(["OPEN_FIBLETS"] if request.clustered else [])]
@@ -150,7 +150,6 @@ class MeshPipeline(RasterPipeline):
         chunk: Chunk,
         request: DrawRequest,
     ) -> None:
-        chunk.bind_storage()
         if request.clustered:
             self._bind_open(chunk)
         groups = -(-chunk.n_fiblets // TASK_FIBLETS)

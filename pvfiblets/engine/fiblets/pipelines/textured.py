@@ -40,6 +40,11 @@ class TexturedPipeline(RasterPipeline):
         super()._bind(program, request, features)
         program["shares"] = self._shares(request)
 
+    def _bind_data(self, chunk: Chunk) -> None:
+        if id(chunk) not in self._data:  # they keep the chunk, so that no other can have its id
+            self._data[id(chunk)] = DataTextures(self._gl, chunk)
+        self._data[id(chunk)].bind()
+
     def _draw(
         self,
         array: moderngl.VertexArray,
@@ -47,9 +52,6 @@ class TexturedPipeline(RasterPipeline):
         chunk: Chunk,
         request: DrawRequest,
     ) -> None:
-        if id(chunk) not in self._data:  # they keep the chunk, so that no other can have its id
-            self._data[id(chunk)] = DataTextures(self._gl, chunk)
-        self._data[id(chunk)].bind()
         count = chunk.n_fiblets * self._shares(request)
         batch = self._batch or count
         for first in range(0, count, batch):

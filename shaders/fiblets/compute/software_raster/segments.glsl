@@ -20,19 +20,8 @@
 // Depth is interpolated in the window, where it is linear; everything else is corrected for perspective (along()).
 
 #include "fiblets/segments/polyline.glsl"
-#include "fiblets/segments/clipped_segment.glsl"
+#include "fiblets/segments/drawn_segment.glsl"
 #include "fiblets/segments/peel.glsl"
-
-// A segment that is drawn.
-struct Segment {
-    uint index;      // within the fiblet; of several merged into one, the first's
-    Vertex from;
-    Vertex to;
-    ClippedSegment piece;
-    float steps;     // from point to point that it stands for
-    vec3 ahead;      // the next one's run
-    bool goes_on;    // whether the line does
-};
 
 // A segment's hit in a pixel.
 struct Fragment {
@@ -60,15 +49,6 @@ float along(Fragment fragment, Segment segment) {
 }
 
 #if FEATURE_TUBES
-// The run of what follows a segment, where that is drawn.
-vec3 next_run(Segment segment) {
-#if FEATURE_CLIP_REGION
-    return segment.piece.cap || !segment.goes_on ? vec3(0.0) : segment.ahead;
-#else
-    return vec3(0.0);
-#endif
-}
-
 #include "fiblets/compute/software_raster/cover_tube.glsl"
 #elif FEATURE_WIDE_LINES
 #include "fiblets/compute/software_raster/cover_wide.glsl"

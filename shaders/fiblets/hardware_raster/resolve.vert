@@ -1,0 +1,8 @@
+// One triangle that covers the whole target, on the far plane: the depth test leaves out what no line covers.
+
+#version 430
+
+void main() {
+    vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+    gl_Position = vec4(corner, 1.0, 1.0);
+}
