@@ -17,7 +17,7 @@ from ...record import Axes, Figure, Record
 from ...study import Options
 from ...timing import Comparison, turns_of
 from .drawing import drawing, drawn
-from .integrators import LIGHT_SIZE, SIDE, formulae, integrators
+from .integrators import LIGHT_SIZE, SIDE, integrators
 from .occlusion import RADIUS, openness
 from .pictures import GroundTruth, colours_of, ground_truth_of, places
 from .scene import Look, circle, look_of
@@ -153,7 +153,7 @@ def _varied(
 # --------------------------------------------------------------------------------------------------------------- study
 
 
-PARTS: dict[Part, float] = {integrators: 4.0, formulae: 0.5, pictures: 4.0, openness: 2.0}
+PARTS: dict[Part, float] = {integrators: 4.0, pictures: 4.0, openness: 2.0}
 IN_WINDOWS: dict[WindowPart, float] = {beside_vtk: 4.0}
 """What is measured, and by what weight each part has its share of the time."""
 
@@ -184,8 +184,7 @@ class VolumeStudy:
         "functions that rise gently (*ramp*), that jump (*edge*), and that are zero but for one entry (*peak*) or "
         "several (*peaks*). κΔ is the optical depth of a step of half a voxel where they are densest. The default is "
         "*adaptive*: it halves steps where one look-up in a pre-integrated table is not enough, and is *preintegrated* "
-        "elsewhere. *bare formulae*: in float32 on profiles of 64 steps whose light has a closed form, without the "
-        "limits that shaders set to what a step may give; *leaves 0 to 1*: profiles whose colours or opacities do.",
+        "elsewhere.",
         "Pictures: a synthetic tree of vessels in each mode, one thing varied at a time, integrators and refinements "
         "at each step: its length in voxels; *early end*, the opacity at which a ray ends; *homogeneous nodes*, whose "
         " values are taken as one if they differ by no more; *nodes as one*, where neither colour nor opacity "
