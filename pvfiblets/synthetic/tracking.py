@@ -108,6 +108,11 @@ _BUNDLES: dict[str, tuple[float, _Points, _Points, list[float], tuple[bool, bool
 BUNDLES = tuple(_BUNDLES)
 
 
+def streamline_count(segments: float, step: float) -> int:
+    """Return how many streamlines of a step, mm, have about so many segments: they are 94 mm long on average."""
+    return max(round(segments * step / 94.0), 1)
+
+
 def brain_streamlines(
     n_streamlines: int,
     step: float = 0.5,

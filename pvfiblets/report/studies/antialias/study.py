@@ -17,6 +17,7 @@ from ...study import LATE, Options, Unavailable
 from ...timing import timing
 from ...window import Window
 from ..codec.data_sets import files_of
+from ..codec.pixels import lines_of
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 SIZE, QUICK_SIZE, FILE_SIZE = (800, 600), (320, 240), (1000, 800)
 SCREEN = (1920, 1080)
 SEGMENTS, QUICK_SEGMENTS = (1_100_000, 6_000_000), (60_000,)  # of synthetic brains
-STEP, QUICK_STEP, LENGTH = 0.1, 0.5, 94.0  # mm, of its points and of its streamlines on average
+STEP, QUICK_STEP = 0.1, 0.5  # mm, of their points
 BUNDLE, QUICK_BUNDLE = 300, 60  # streamlines of it
 TUBES, QUICK_TUBES = 60, 15
 REFERENCE, QUICK_REFERENCE = 16, 8  # samples along a pixel's side
@@ -84,7 +85,7 @@ def subjects(options: Options) -> list[Subject]:
     import pyvista as pv
 
     from pvfiblets.report.studies.codec.coded import compress
-    from pvfiblets.synthetic import brain_streamlines
+    from pvfiblets.synthetic import brain_streamlines, streamline_count
 
     quick = options.quick
     few = brain_streamlines(QUICK_BUNDLE if quick else BUNDLE, step=QUICK_STEP, seed=options.seed)
@@ -98,7 +99,7 @@ def subjects(options: Options) -> list[Subject]:
         step = QUICK_STEP if quick else STEP
 
         def fill(plotter: pv.BasePlotter) -> None:
-            streamlines = brain_streamlines(max(round(segments * step / LENGTH), 1), step=step, seed=options.seed)
+            streamlines = brain_streamlines(streamline_count(segments, step), step=step, seed=options.seed)
             plotter.add_fiblets(compress(streamlines), show_scalar_bar=False)
             look(plotter, 1.4)
 
@@ -122,9 +123,7 @@ def subjects(options: Options) -> list[Subject]:
         plotter.add_mesh(pv.Sphere(radius=20.0, center=middle, theta_resolution=12, phi_resolution=8), color="white")
 
     def lines(plotter: pv.BasePlotter) -> None:
-        starts, ends = few.offsets[:-1], few.offsets[1:]
-        cells = [np.concatenate([[b - a], np.arange(a, b)]) for a, b in zip(starts, ends, strict=True)]
-        poly = pv.PolyData(np.asarray(few.points, np.float64), lines=np.concatenate(cells))
+        poly = lines_of(pv, few.points, np.asarray(few.offsets))
         plotter.add_mesh(poly, color="orange", line_width=2, lighting=False)
         look(plotter, 3.0)
 

@@ -13,7 +13,7 @@ from pvfiblets.streamlines import Streamlines
 from ...record import Axes, Figure, Record
 from ...study import Options
 from ...timing import Comparison, Turns
-from .data_sets import LENGTH, QUICK_STEPS, SMALL, STEPS, DataSet, files_of
+from .data_sets import QUICK_STEPS, SMALL, STEPS, DataSet, files_of
 from .errors import median_step
 from .study import DEFAULT, Variant, measured, one_thread, variants
 
@@ -72,12 +72,13 @@ class TractogramsStudy:
 
 def trackings(options: Options) -> Iterator[DataSet]:
     """Make sets of all algorithms and steps, one after the other."""
+    from pvfiblets.synthetic import streamline_count
     from pvfiblets.synthetic.trackers import ALGORITHMS, tracked_streamlines
 
     points = min(QUICK_POINTS, options.points) if options.quick else POINTS
     for algorithm in ALGORITHMS:
         for step in QUICK_STEPS if options.quick else STEPS:
-            made = tracked_streamlines(algorithm, max(round(points * step / LENGTH), 1), step, options.seed)
+            made = tracked_streamlines(algorithm, streamline_count(points, step), step, options.seed)
             yield DataSet(f"{algorithm}-like, {step:g} mm", algorithm, made)
 
 

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 SEGMENTS = 12_000_000  # of the synthetic brain
 QUICK_SEGMENTS = 500_000
 STEP = 0.1  # mm
-LENGTH = 94.0  # mm of a synthetic streamline on average
 FILE_POINTS = 4_000_000  # to which files are cut
 QUICK_FILE_POINTS = 500_000
 FILES = 3  # the largest
@@ -186,9 +185,13 @@ class CullingStudy:
 
 def scenes(options: Options) -> Iterator[Scene]:
     """Make or read one set after the other, and fly around each."""
+    from pvfiblets.synthetic import brain as synthetic_brain
+    from pvfiblets.synthetic import streamline_count
+
     size = QUICK_SIZE if options.quick else SIZE
     frames = QUICK_FRAMES if options.quick else FRAMES
-    brain = _synthetic_brain(options)
+    count = streamline_count(QUICK_SEGMENTS if options.quick else SEGMENTS, STEP)
+    brain = synthetic_brain(count, STEP, options.seed)
     for kind, degrees in QUICK_FLIGHTS if options.quick else FLIGHTS:
         turn = "still" if degrees == STILL else f"{degrees:g}° a frame"
         path = views(brain.bounds, kind, degrees, frames + 1, size)
@@ -208,14 +211,6 @@ def scenes(options: Options) -> Iterator[Scene]:
             continue
         path = views(fiblets.bounds, "far", SLOW, frames + 1, size)
         yield Scene(data.name, data.group, fiblets, path)
-
-
-def _synthetic_brain(options: Options) -> FibletSet:
-    """Make a brain of streamlines."""
-    from pvfiblets.synthetic import brain
-
-    segments = QUICK_SEGMENTS if options.quick else SEGMENTS
-    return brain(max(round(segments * STEP / LENGTH), 1), STEP, options.seed)
 
 
 def measured(

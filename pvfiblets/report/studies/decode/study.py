@@ -16,7 +16,7 @@ from ...study import Options
 from ...timing import Comparison, Turns
 from ..codec.errors import error_figures
 from . import decoders
-from .reference import first_frame
+from .reference import first_frame, product, rotate_x
 
 STEPS = (0.05, 0.1, 0.2, 0.5, 1.0)  # mm
 QUICK_STEPS = (0.1, 1.0)
@@ -61,24 +61,13 @@ def exact(fiblets: Made) -> npt.NDArray[np.longdouble]:
     # The meaning is that of `reference`: products of the table's quaternions as they are stored.
     long = np.longdouble
     table = quaternions()[fiblets.cap].astype(long)
-    q = fiblets.frames.astype(long)
+    q = fiblets.frames.astype(long).T
     points = np.empty((*fiblets.codes.shape[:1], decoders.POINTS, 3), long)
     points[:, 0] = fiblets.anchors
     for i in range(1, decoders.POINTS):
         if i > 1:
-            a, b = q.T, table[fiblets.codes[:, i - 2]].T
-            q = np.stack(
-                [
-                    a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-                    a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-                    a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-                    a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
-                ],
-                axis=1,
-            )
-        w, x, y, z = q.T
-        forward = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1)
-        points[:, i] = points[:, i - 1] + long(fiblets.step) * forward
+            q = product(q, table[fiblets.codes[:, i - 2]].T)
+        points[:, i] = points[:, i - 1] + long(fiblets.step) * rotate_x(q).T
     return points
 
 

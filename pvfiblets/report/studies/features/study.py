@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
 SEGMENTS, QUICK_SEGMENTS = 2_000_000, 150_000  # of a synthetic brain
 STEP = 0.5  # mm
-LENGTH = 94.0  # mm of a synthetic streamline on average
 TUBES, QUICK_TUBES = 400, 60  # streamlines that are drawn as spline tubes, and with halos
 VOXELS, QUICK_VOXELS = 96, 40  # along a side of a synthetic volume
 SIZE, QUICK_SIZE = (1024, 768), (480, 360)
@@ -119,10 +118,10 @@ def _costs(nbytes: int, plain_nbytes: int, timing: Timing, plain: Timing) -> dic
 def brain(options: Options) -> FibletSet:
     """Make fiblets of a synthetic brain, with a per-point array ``'height'``."""
     from pvfiblets.report.studies.codec.coded import compress
-    from pvfiblets.synthetic import brain_streamlines
+    from pvfiblets.synthetic import brain_streamlines, streamline_count
 
     segments = QUICK_SEGMENTS if options.quick else SEGMENTS
-    made = brain_streamlines(max(round(segments * STEP / LENGTH), 1), step=STEP, seed=options.seed)
+    made = brain_streamlines(streamline_count(segments, STEP), step=STEP, seed=options.seed)
     made.per_point = {"height": made.points[:, 2].copy()}
     return compress(made, per_point=("height",))
 

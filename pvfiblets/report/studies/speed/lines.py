@@ -21,7 +21,7 @@ from ...record import FRAME, Axes, Figure, Record
 from ...study import Options, Unavailable
 from ...timing import timing
 from ...window import Window
-from .cells import DEGREES_PER_FRAME, PER_STREAMLINE, WARM
+from .cells import DEGREES_PER_FRAME, WARM
 from .study import FRAMES, LIMIT, QUICK_FRAMES, QUICK_SECONDS, by_size
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class LinesStudy:
     def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every size and method."""
         from pvfiblets import formats
-        from pvfiblets.synthetic import brain_streamlines
+        from pvfiblets.synthetic import brain_streamlines, streamline_count
 
         if find_spec("pyvista") is None:
             raise Unavailable("pyvista is not installed")
@@ -67,7 +67,7 @@ class LinesStudy:
         found = []
         with tempfile.TemporaryDirectory() as folder:
             for segments in QUICK_SEGMENTS if options.quick else SEGMENTS:
-                brain = brain_streamlines(max(1, round(segments * STEP / PER_STREAMLINE)), STEP, seed=options.seed)
+                brain = brain_streamlines(streamline_count(segments, STEP), STEP, seed=options.seed)
                 path = Path(folder) / "brain.tck"
                 formats.write(path, brain)
                 exact = brain.n_points - len(brain)

@@ -16,7 +16,7 @@ from ..antialias.study import OURS, PictureWindow, Subject, differences
 
 SIZE, QUICK_SIZE = (800, 600), (320, 240)
 SEGMENTS, QUICK_SEGMENTS = 1_000_000, 60_000  # of a synthetic brain
-STEP, LENGTH = 0.5, 94.0  # mm, of its points and of its streamlines on average
+STEP = 0.5  # mm, of its points
 OPACITIES, QUICK_OPACITIES = (0.02, 0.05, 0.2, 0.5), (0.05, 0.5)
 LAYERS = 64  # of the reference
 WAYS: tuple[tuple[str, Any], ...] = (
@@ -54,9 +54,9 @@ class TranslucencyStudy:
 
 def _subjects(options: Options, pv: Any) -> list[Subject]:
     from pvfiblets.report.studies.codec.coded import compress
-    from pvfiblets.synthetic import brain_streamlines
+    from pvfiblets.synthetic import brain_streamlines, streamline_count
 
-    n = max(round((QUICK_SEGMENTS if options.quick else SEGMENTS) * STEP / LENGTH), 1)
+    n = streamline_count(QUICK_SEGMENTS if options.quick else SEGMENTS, STEP)
     fiblets = compress(brain_streamlines(n, step=STEP, seed=options.seed))
 
     def whole(plotter: pv.BasePlotter) -> None:

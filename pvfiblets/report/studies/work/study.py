@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
 SEGMENTS, QUICK_SEGMENTS = (6e6, 60e6, 434e6, 600e6), (2e5,)  # of synthetic brains
-STEP, LENGTH = 0.1, 94.0  # mm: distance of points; mean length of a streamline
+STEP = 0.1  # mm between points
 SIZE, QUICK_SIZE = (1920, 1080), (320, 180)
 SLOW, JUMP = 1.14, 120.0  # degrees a frame; and at once
 STEADY = 3  # frames before the one that is counted
@@ -53,7 +53,7 @@ class WorkStudy:
 
     def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every pass of every scene, and one of the frame."""
-        from pvfiblets.synthetic import brain
+        from pvfiblets.synthetic import brain, streamline_count
 
         size = QUICK_SIZE if options.quick else SIZE
         with drawing_context(options) as ctx:
@@ -62,7 +62,7 @@ class WorkStudy:
                 if not options.allows(name):
                     continue
                 try:
-                    fiblets = brain(max(round(segments * STEP / LENGTH), 1), STEP, options.seed)
+                    fiblets = brain(streamline_count(segments, STEP), STEP, options.seed)
                     for scene in SCENES:
                         if options.allows(f"{name}, {scene}"):
                             yield from measured(ctx, fiblets, name, scene, size)
