@@ -11,11 +11,11 @@ from vtkmodules.vtkCommonMath import vtkMatrix4x4
 
 from pvfiblets.mappers.frames.scene import to_array
 from pvfiblets.mappers.picking import Layer, pick_area, shown_by
+from pvfiblets.plotting.fiblets.scalars import point_values
 
 if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkRenderer
 
-    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.fiblets.actor import FibletActor
 
 _AT_ONCE = 4096  # streamlines that are decompressed together
@@ -111,27 +111,6 @@ def _between(offsets: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.nd
     return offsets[:-1] + before, offsets[:-1] + np.minimum(before + 1, last), share
 
 
-def point_values(fiblets: FibletSet, ids: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return one number per point of some streamlines, one after another, and their offsets."""
-    if name in fiblets.per_point:
-        lines = fiblets.decompress(ids)
-        return np.asarray(lines.per_point[name], np.float64).reshape(len(lines.points), -1)[:, 0], lines.offsets
-    from pvfiblets.codec.streamline_ranges import StreamlineRanges
-    from pvfiblets.query.measures.measures import measure
-
-    part = fiblets.extract(ids)
-    try:
-        measured = measure(part, name)
-    except KeyError:
-        return None
-    if measured.kind != "point":
-        return None
-    where = StreamlineRanges.from_fiblets(part)
-    offsets = np.concatenate([[0], np.cumsum(where.points)])
-    rows = np.arange(offsets[-1]) + np.repeat(where.point - offsets[:-1], where.points)
-    return np.asarray(measured.array(), np.float64)[rows], offsets
-
-
 def visible(
     actor: FibletActor,
     polygon: Any,
@@ -225,4 +204,4 @@ def checked_box(box: Any) -> np.ndarray:
     return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
 
 
-__all__ = ["Layer", "Picked", "checked_box", "everything", "point_values", "visible"]
+__all__ = ["Layer", "Picked", "checked_box", "everything", "visible"]

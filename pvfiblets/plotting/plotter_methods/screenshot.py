@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import sys
 from contextlib import AbstractContextManager, nullcontext
@@ -15,6 +14,7 @@ import numpy.typing as npt
 import pyvista as pv
 
 from pvfiblets.plotting.actors.registry import A, ActorRegistry
+from pvfiblets.support.real_numbers import is_number
 
 ONE_BIT_FORMATS = (".png", ".tif", ".tiff", ".bmp")  # kinds of files that hold one bit for a pixel
 
@@ -85,7 +85,7 @@ class PrintableComponent(ActorRegistry[A]):
         (1200, 1600)
         """
         scale, supersampling = _whole("scale", scale), _whole("supersampling", supersampling)
-        if dpi is not None and not (_is_number(dpi) and dpi > 0.0):
+        if dpi is not None and not (is_number(dpi) and dpi > 0.0):
             raise ValueError(f"dpi is {dpi!r}; give pixels per inch, a number above 0")
         target = _target(filename, one_bit)
         with _sampled_once(self._plotter) if supersampling > 1 else nullcontext():
@@ -139,13 +139,10 @@ def _taken(plotter: pv.BasePlotter, scale: int, window_size: tuple[int, int] | N
 
 
 def _whole(name: str, value: Any) -> int:
-    if isinstance(value, bool) or not _is_number(value) or value < 1 or value % 1 != 0:
+    if not is_number(value) or value < 1 or value % 1 != 0:
         raise ValueError(f"{name} is {value!r}; give a whole number, 1 or more")
     return int(value)
 
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float, np.number)) and math.isfinite(value)
 
 
 def _target(filename: Any, one_bit: bool) -> Path | BytesIO | None:
