@@ -181,18 +181,7 @@ def iter_brain_streamlines(
     wander: float = 4.0,
     fa: bool = False,
 ) -> Iterator[Streamlines]:
-    """Make the streamlines of :func:`brain_streamlines` in consecutive chunks of bounded memory.
-
-    Parameters
-    ----------
-    n_streamlines, step, seed, noise, wander, fa
-        As for :func:`brain_streamlines`.
-
-    Yields
-    ------
-    Streamlines
-        At most ``CHUNK`` streamlines each, without groups.
-    """
+    """Make the streamlines of :func:`brain_streamlines` in chunks of at most ``CHUNK`` each, without groups."""
     if n_streamlines < 0:
         raise ValueError(f"n_streamlines is {n_streamlines}; give 0 or more")
     if not 0.0 < step <= LENGTHS[0]:
