@@ -204,6 +204,7 @@ class FakeStudy:
     """Takes so many seconds for each measurement, and asks its budget before each."""
 
     title, approximates, notes = "Fake", "nothing", ("a note",)
+    across = ()
     axes = (Axes("cost", "costs/size", "errors/max", "x", "y"),)
 
     def __init__(self, name, clock, seconds, wanted):
@@ -334,7 +335,7 @@ def test_registered_studies_are_what_they_say(name):
 
 def test_a_study_that_draws_has_a_context_and_the_report_its_driver(gl, monkeypatch, tmp_path):
     class Drawing:
-        name, title, approximates, axes, notes = "drawing", "Drawing", "", (), ()
+        name, title, approximates, axes, notes, across = "drawing", "Drawing", "", (), (), ()
 
         def run(self, options):
             with drawing.drawing_context(options) as ctx:

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...record import FRAME, Axes, Figure, Record
-from ...study import LATE, Options, Unavailable
+from ...study import LATE, Options, Study, Unavailable
 from ...timing import timing
 from ...window import Window
 from ..codec.data_sets import files_of
@@ -140,48 +140,16 @@ def subjects(options: Options) -> list[Subject]:
             Subject("lines drawn by VTK", lines, only_vtk=True), *map(file, files)]  # fmt: skip
 
 
-class AntialiasStudy:
-    """Pictures of few samples a pixel, beside the mean of very many."""
-
-    name = "antialias"
-    title = "Smooth edges"
-    approximates = (
-        "The mean of what each pixel shows, by one sample, by what lines cover of it, or by the mean of some pictures."
-    )
-    axes = (
-        Axes("rest", "times/at rest", "errors/at rest", "ms until the picture is finished", "rms error, levels of 255"),
-        Axes("moving", "times/moving", "errors/moving", "ms per frame", "rms error, levels of 255"),
-    )
-    notes = (
-        "PyVista windows, all of VTK's work included; the camera turns by 1.14° between frames. *moving*: a frame "
-        "during the turn; *at rest*: the finished picture, and the time from the change to it. Both "
-        "are the same but for *refined*, which then draws the samples of a screenshot, 16 unless a number is set, "
-        "each with the camera moved by parts of a pixel: for a single set of lines at once, *singly* one "
-        "after the other, as in all other scenes. *samples*: the number of pictures averaged into the finished one. "
-        "*shimmer*: the mean difference of the colours of two frames while the camera turns by 0.1° between them, "
-        "over the pixels that show anything in either.",
-        "Errors are root mean squares over the pixels that show anything, beside the mean of 256 pictures (64 in quick "
-        "runs) whose camera is moved on a regular grid in the pixel: a box filter one pixel wide. It is made for each "
-        "scene without any smoothing, of lines of their full width (OpenGL's own lines of one pixel are thinner where "
-        "they are slanted), of halos that do not blend with lines; *p99* and *max* are of the finished picture.",
-        "*MSAA*, *SSAA* and *FXAA* are VTK's own. MSAA smooths the meshes in a scene, no lines or tubes of this "
-        "program, and averages light, not colours: its error is partly that. SSAA has a wider filter. *lines drawn by "
-        "VTK*: the lines of *bundle* by ``add_mesh``; there, *refined* is set, since nothing of this program is "
-        "in the scene. OpenGL draws other pixels of such lines under MSAA: its reference there is the mean of pictures "
-        "under MSAA of 8.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every scene and variant."""
-        try:
-            import pyvista  # noqa: F401
-        except ImportError as error:
-            raise Unavailable(f"{error.name} is not installed") from error
-        for subject in subjects(options):
-            if not options.allows(subject.name):
-                continue
-            yield from _measured(subject, options)
-
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every scene and variant."""
+    try:
+        import pyvista  # noqa: F401
+    except ImportError as error:
+        raise Unavailable(f"{error.name} is not installed") from error
+    for subject in subjects(options):
+        if not options.allows(subject.name):
+            continue
+        yield from _measured(subject, options)
 
 def differences(picture: Pixels, reference: Pixels) -> dict[str, float]:
     """Return errors of a picture: of all channels of pixels in which either shows something."""
@@ -350,4 +318,33 @@ def _record(subject: Subject, variant: Variant, window: PictureWindow, reference
     )
 
 
-STUDY = AntialiasStudy()
+STUDY = Study(
+    name="antialias",
+    title="Smooth edges",
+    approximates=(
+        "The mean of what each pixel shows, by one sample, by what lines cover of it, or by the mean of some pictures."
+    ),
+    axes=(
+        Axes("rest", "times/at rest", "errors/at rest", "ms until the picture is finished", "rms error, levels of 255"),
+        Axes("moving", "times/moving", "errors/moving", "ms per frame", "rms error, levels of 255"),
+    ),
+    notes=(
+        "PyVista windows, all of VTK's work included; the camera turns by 1.14° between frames. *moving*: a frame "
+        "during the turn; *at rest*: the finished picture, and the time from the change to it. Both "
+        "are the same but for *refined*, which then draws the samples of a screenshot, 16 unless a number is set, "
+        "each with the camera moved by parts of a pixel: for a single set of lines at once, *singly* one "
+        "after the other, as in all other scenes. *samples*: the number of pictures averaged into the finished one. "
+        "*shimmer*: the mean difference of the colours of two frames while the camera turns by 0.1° between them, "
+        "over the pixels that show anything in either.",
+        "Errors are root mean squares over the pixels that show anything, beside the mean of 256 pictures (64 in quick "
+        "runs) whose camera is moved on a regular grid in the pixel: a box filter one pixel wide. It is made for each "
+        "scene without any smoothing, of lines of their full width (OpenGL's own lines of one pixel are thinner where "
+        "they are slanted), of halos that do not blend with lines; *p99* and *max* are of the finished picture.",
+        "*MSAA*, *SSAA* and *FXAA* are VTK's own. MSAA smooths the meshes in a scene, no lines or tubes of this "
+        "program, and averages light, not colours: its error is partly that. SSAA has a wider filter. *lines drawn by "
+        "VTK*: the lines of *bundle* by ``add_mesh``; there, *refined* is set, since nothing of this program is "
+        "in the scene. OpenGL draws other pixels of such lines under MSAA: its reference there is the mean of pictures "
+        "under MSAA of 8.",
+    ),
+    run=run,
+)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...record import FRAME, Axes, Figure, Record
-from ...study import LATE, Options, Unavailable
+from ...study import LATE, Options, Study, Unavailable
 from ...timing import timing
 from ..antialias.study import OURS, PictureWindow, Subject, differences
 
@@ -24,33 +24,16 @@ WAYS: tuple[tuple[str, Any], ...] = (
 )  # fmt: skip
 
 
-class TranslucencyStudy:
-    """Pictures of translucent lines beside an exact sort of each pixel's."""
-
-    name = "translucency"
-    title = "Lines seen through each other"
-    approximates = "All lines of a pixel, sorted by depth and blended one by one."
-    axes = (Axes("opacity", "times/frame", "errors/rms", "ms per frame", "rms error, levels of 255"),)
-    notes = (
-        "PyVista windows, all of VTK's work included; the camera turns by 1.14° between frames. *all*: the nearest "
-        "line as it is, the others in slices by how far behind it they are. *layers*: so many of the nearest lines, "
-        "sorted. "
-        "*times opaque*: beside a frame of the same window with opacity 1.",
-        "The reference are 64 layers, sorted exactly. Errors are root mean squares over the pixels that hold 64 lines "
-        "or fewer, so that it leaves none out; *counted* is their share of the pixels that show anything.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every opacity and way of blending."""
-        try:
-            import pyvista as pv
-        except ImportError as error:
-            raise Unavailable(f"{error.name} is not installed") from error
-        for subject in _subjects(options, pv):
-            if not options.allows(subject.name):
-                continue
-            yield from _measured(subject, options)
-
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every opacity and way of blending."""
+    try:
+        import pyvista as pv
+    except ImportError as error:
+        raise Unavailable(f"{error.name} is not installed") from error
+    for subject in _subjects(options, pv):
+        if not options.allows(subject.name):
+            continue
+        yield from _measured(subject, options)
 
 def _subjects(options: Options, pv: Any) -> list[Subject]:
     from pvfiblets.report.studies.codec.coded import compress
@@ -132,4 +115,18 @@ def _measured(subject: Subject, options: Options) -> Iterator[Record]:
     options.log(f"translucency: {subject.name}: {time.perf_counter() - begun:.0f} s")
 
 
-STUDY = TranslucencyStudy()
+STUDY = Study(
+    name="translucency",
+    title="Lines seen through each other",
+    approximates="All lines of a pixel, sorted by depth and blended one by one.",
+    axes=(Axes("opacity", "times/frame", "errors/rms", "ms per frame", "rms error, levels of 255"),),
+    notes=(
+        "PyVista windows, all of VTK's work included; the camera turns by 1.14° between frames. *all*: the nearest "
+        "line as it is, the others in slices by how far behind it they are. *layers*: so many of the nearest lines, "
+        "sorted. "
+        "*times opaque*: beside a frame of the same window with opacity 1.",
+        "The reference are 64 layers, sorted exactly. Errors are root mean squares over the pixels that hold 64 lines "
+        "or fewer, so that it leaves none out; *counted* is their share of the pixels that show anything.",
+    ),
+    run=run,
+)

@@ -14,7 +14,7 @@ from pvfiblets.tubes import SplineTubes, curves
 from ...cameras import VIEWS, Camera, by_turns, orbit
 from ...drawing import Part, WindowPart, run_parts
 from ...record import Axes, Figure, Record
-from ...study import LATE, Options
+from ...study import LATE, Options, Study
 from ...timing import Comparison
 from .drawings import CastTubes, Drawing, drawings
 from .pictures import FORMATS, Truth, helices, sampled
@@ -25,7 +25,7 @@ from .sweeps import PICTURE_SWEEPS
 if TYPE_CHECKING:
     import moderngl
 
-__all__ = ["STUDY", "TubesStudy"]
+__all__ = ["STUDY"]
 
 SIZE, QUICK_SIZE = (480, 270), (160, 90)
 TUBES = 6  # helices of 24 segments each
@@ -249,24 +249,27 @@ PARTS: dict[Part, float] = {
 IN_WINDOWS: dict[WindowPart, float] = {in_windows: 4.0}  # measurements, and the weight of each part's share of the time
 
 
-class TubesStudy:
-    """Ray-cast spline tubes beside the paper's solver and beside tessellation."""
+def run(options: Options) -> Iterator[Record]:
+    """Yield records part by part, each with its share of what time is left."""
+    return run_parts(PARTS, options, IN_WINDOWS)
 
-    name = "tubes"
-    title = "Ray-cast spline tubes"
-    approximates = (
+
+STUDY = Study(
+    name="tubes",
+    title="Ray-cast spline tubes",
+    approximates=(
         "Intersections of rays with tubes of varying radius, found in float32 by a bounded number of steps: solvers by "
         "iterations, beside the paper's; whole pictures, beside tessellation; depth, by its stored format."
-    )
-    axes = (
+    ),
+    axes=(
         Axes("hit-p99", "times/hit", "errors/hit p99", "ns per ray", "99th percentile of errors, radii"),
         Axes("hit-max", "times/hit", "errors/hit max", "ns per ray", "largest error, radii"),
         Axes("silhouette", "times/draw", "errors/silhouette", "ms per frame", "silhouettes off, pixels"),
         Axes("depth", "times/draw", "errors/depth p50", "ms per frame", "median of depth errors, radii"),
         Axes("ratio", "", "errors/p99 at ratio ", "ratio that the title names", "99th percentile, radii", series=True),
         Axes("stored", "", "errors/p99 at far/near ", "far over near plane", "99th percentile, radii", series=True),
-    )
-    notes = (
+    ),
+    notes=(
         "The right answer is found in float64 by another method (report/studies/tubes/reference.py: eigenvalues of "
         "companion matrices, nothing is bracketed). Errors are in radii of the sphere that is met: along the ray, "
         "where it meets "
@@ -292,11 +295,6 @@ class TubesStudy:
         "*in a window*: the same pictures in PyVista windows with one light at the eye: `plotter.add_spline_tubes`, "
         "VTK's tube filter around the nodes' polylines, or around more samples of each segment, and VTK's lines shaded "
         "as tubes, as wide as the mean radius. Meshes of more than 12 million corners are left out.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield records part by part, each with its share of what time is left."""
-        return run_parts(PARTS, options, IN_WINDOWS)
-
-
-STUDY = TubesStudy()
+    ),
+    run=run,
+)

@@ -14,7 +14,7 @@ from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
 from ...cameras import by_turns
 from ...drawing import Part, WindowPart, run_parts
 from ...record import Axes, Figure, Record
-from ...study import Options
+from ...study import Options, Study
 from ...timing import Comparison, turns_of
 from .drawing import drawing, drawn
 from .integrators import LIGHT_SIZE, SIDE, integrators
@@ -158,24 +158,27 @@ IN_WINDOWS: dict[WindowPart, float] = {beside_vtk: 4.0}
 """What is measured, and by what weight each part has its share of the time."""
 
 
-class VolumeStudy:
-    """Ray-cast volumes by all that may be set, thin to stiff."""
+def run(options: Options) -> Iterator[Record]:
+    """Yield records part by part, each with its share of what time is left."""
+    return run_parts(PARTS, options, IN_WINDOWS)
 
-    name = "volumes"
-    title = "Ray-cast volumes"
-    approximates = (
+
+STUDY = Study(
+    name="volumes",
+    title="Ray-cast volumes",
+    approximates=(
         "Light along rays through a volume, added up step by step: integrators, steps, early ends, skipped "
         "nodes, sparse rays; where surfaces lie; ambient occlusion by few rays."
-    )
-    axes = (
+    ),
+    axes=(
         Axes("light", "times/draw", "errors/light rms", "ms per frame", "rms error of light and opacity, of 1"),
         Axes("largest", "times/draw", "errors/light max", "ms per frame", "largest error of light, of 1"),
         Axes("stiff", "", "errors/max at κΔ ", "κΔ of a step of half a voxel", "largest error of light", series=True),
         Axes("colour", "times/draw", "errors/colour rms", "ms per frame", "rms error of colours, of 1"),
         Axes("place", "times/draw", "errors/place", "ms per frame", "mean error of a surface's place, voxels"),
         Axes("openness", "times/occlusion", "errors/openness rms", "ms per frame", "rms error of openness, of 1"),
-    )
-    notes = (
+    ),
+    notes=(
         "The right answer is found in float64, ray by ray and cell by cell, without steps "
         "(report/studies/volumes/reference.py), in a sample of the pixels whose rays meet the volume. Colours and "
         "opacities are from 0 to 1; pictures keep them in 8 bits, which makes up 0.003 of largest errors and 0.001 of "
@@ -198,11 +201,6 @@ class VolumeStudy:
         "*in a window*: `plotter.add_raycast_volume` and `plotter.add_volume(mapper='gpu')` in PyVista windows, one "
         "light at the eye, one transfer function, the same lengths of steps: compare times at equal errors. *cast*: "
         "the share of the octree's leaves that is not skipped.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield records part by part, each with its share of what time is left."""
-        return run_parts(PARTS, options, IN_WINDOWS)
-
-
-STUDY = VolumeStudy()
+    ),
+    run=run,
+)
