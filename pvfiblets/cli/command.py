@@ -148,6 +148,8 @@ def _add_demo(commands: Commands) -> None:
 
 
 def _add_report(commands: Commands) -> None:
+    from pvfiblets.report.studies import ONLY_NAMED, chosen_names
+
     report = commands.add_parser(
         "report",
         help="measure error against run time of every approximation and of other methods",
@@ -155,8 +157,7 @@ def _add_report(commands: Commands) -> None:
     )
     report.add_argument(
         "--only", nargs="+", metavar="STUDY",
-        help="codec, decode, tractograms, pixels, culling, tubes, volumes, halos, features, antialias, "
-        "translucency, query, stability; only by name, speed alone: speed, lines, card, reading, work",
+        help=f"{', '.join(chosen_names())}; only by name, speed alone: {', '.join(ONLY_NAMED)}",
     )  # fmt: skip
     report.add_argument(
         "--data", nargs="+", default=[], metavar="FILE",

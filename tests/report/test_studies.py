@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import formats
+from pvfiblets.cli.command import main
 from pvfiblets.codec.encoding.compress import compress
 from pvfiblets.report import drawing, run, studies, timing
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record
@@ -331,6 +332,13 @@ def test_registered_studies_are_what_they_say(name):
     assert study.axes or name == "stability"  # whose cases are told in words
     assert (name in studies.chosen_names()) != (name in studies.ONLY_NAMED)
     assert studies.chosen_names([name]) == [name]
+
+
+def test_the_commands_help_names_all_studies(capsys):
+    with pytest.raises(SystemExit):
+        main(["report", "--help"])
+    told = " ".join(capsys.readouterr().out.split())
+    assert set(studies.MODULES) <= set(told.replace(",", " ").replace(";", " ").replace(":", " ").split())
 
 
 def test_a_study_that_draws_has_a_context_and_the_report_its_driver(gl, monkeypatch, tmp_path):
