@@ -6,11 +6,8 @@ package's own to draw: an actor watches its property, and takes over what change
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
-
-from pvfiblets.mappers.frames.observers import observe, weakly
 
 _writing = 0
 
@@ -29,15 +26,3 @@ def own_writes() -> Iterator[None]:
 def is_own_write() -> bool:
     """Return whether this package is making the current change."""
     return _writing > 0
-
-
-class LinkedProperty:
-    """The property that an actor watches, and may share with others."""
-
-    def __init__(self) -> None:
-        self._end: Callable[[], None] = lambda: None
-
-    def watch(self, prop: Any, modified: Callable[[], None]) -> None:
-        """Call a method whenever a property is modified, and no longer when the one before is."""
-        self._end()
-        self._end = observe(prop, ("ModifiedEvent",), weakly(modified))
