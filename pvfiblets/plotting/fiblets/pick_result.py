@@ -16,7 +16,7 @@ from pvfiblets.plotting.fiblets.scalars import point_values
 if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkRenderer
 
-    from pvfiblets.plotting.fiblets.actor import FibletActor
+    from pvfiblets.plotting.fiblets.selection import SelectableActor
 
 _AT_ONCE = 4096  # streamlines that are decompressed together
 
@@ -47,7 +47,7 @@ class Picked:
     actor showed when it was picked.
     """
 
-    actor: FibletActor
+    actor: SelectableActor
     ids: np.ndarray
     places: np.ndarray
     depths: np.ndarray
@@ -112,7 +112,7 @@ def _between(offsets: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def visible(
-    actor: FibletActor,
+    actor: SelectableActor,
     polygon: Any,
     *,
     tolerance: float = 0.0,
@@ -136,7 +136,7 @@ def visible(
 
 
 def everything(
-    actor: FibletActor, polygon: Any, *, tolerance: float = 0.0, renderer: vtkRenderer | None = None
+    actor: SelectableActor, polygon: Any, *, tolerance: float = 0.0, renderer: vtkRenderer | None = None
 ) -> Picked | None:
     """Return all of an actor under an area of the window, hidden or not; ``None`` if it is empty."""
     # Arguments are as for `visible`. Lines left out by the actor's filters and cuts are not included. Visible lines of
@@ -186,7 +186,7 @@ def everything(
     return Picked(actor, ids, places, depths, 0.0, through=True, _data=data)
 
 
-def _context(actor: FibletActor) -> dict[str, Any]:
+def _context(actor: SelectableActor) -> dict[str, Any]:
     """Return what the actor shows now."""
     model = vtkMatrix4x4()
     actor.GetModelToWorldMatrix(model)

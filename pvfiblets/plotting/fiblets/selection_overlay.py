@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.mappers.effects.shader_effects import Draw
-    from pvfiblets.plotting.fiblets.selection import SelectableActor
+    from pvfiblets.plotting.fiblets.filtering import BundledActor
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
 
@@ -68,7 +68,7 @@ class SelectionOverlay:
 
     def __init__(
         self,
-        owner: SelectableActor,  # whose streamlines they are
+        owner: BundledActor,  # whose streamlines they are
         ids: np.ndarray,  # `(n,)` int64, rising
         *,
         color: tuple[float, ...] | None,  # one colour for all; the owner's colours by default

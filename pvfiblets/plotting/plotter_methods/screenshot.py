@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
+from pvfiblets.mappers.frames.observers import observe
 from pvfiblets.plotting.actors.registry import A, ActorRegistry
 from pvfiblets.support.real_numbers import is_number
 
@@ -127,12 +128,12 @@ def _taken(plotter: pv.BasePlotter, scale: int, window_size: tuple[int, int] | N
         if not plotter._first_time:  # noqa: SLF001 - else screenshot renders
             plotter.render()
         window = plotter.render_window
-        tag = None if window is None else window.AddObserver("EndEvent", collect)
+        end = None if window is None else observe(window, ("EndEvent",), collect)
         try:
             picture = plotter.screenshot(None, transparent_background=False, scale=scale)
         finally:
-            if tag is not None:
-                window.RemoveObserver(tag)
+            if end is not None:
+                end()
     if errors:
         raise errors[0]
     return np.asarray(picture)[..., :3]
