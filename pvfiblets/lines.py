@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any, cast
@@ -401,6 +401,34 @@ def numbers_or_colours(array: npt.NDArray[Any], name: str, rgb: bool | None) -> 
     if rgb is None and array.shape[1] in (3, 4) and (array.dtype == np.uint8 or name.endswith(("_rgb", "_rgba"))):
         return array
     return np.asarray(np.linalg.norm(array.astype(np.float64), axis=1))
+
+
+def numbers_or_rgba(
+    array: npt.NDArray[Any], name: str, rgb: bool | None, row_name: Callable[[int], str] | None = None
+) -> npt.NDArray[Any]:
+    """Return numbers as they are, and colours as float64 RGBA of 0 to 1; errors name rows by a function."""
+    if array.ndim == 1:
+        if rgb:
+            raise ValueError(
+                f"rgb=True asks for colours, but {name!r} has one number in each row; drop rgb, or give 3 or 4 columns"
+            )
+        return array
+    if array.ndim != 2 or array.shape[1] not in (3, 4):
+        raise ValueError(
+            f"{name!r} has the shape {array.shape} and type {array.dtype}, expected one number in each row, a "
+            "vector, or 3 or 4 columns of colours with rgb=True"
+        )
+    colours = np.ones((len(array), 4))
+    colours[:, : array.shape[1]] = array / (255.0 if array.dtype == np.uint8 else 1.0)
+    outside = ~((colours >= 0.0) & (colours <= 1.0)).all(axis=1)
+    if outside.any():
+        row = int(np.argmax(outside))
+        where = f"{row} of {name!r}" if row_name is None else row_name(row)
+        raise ValueError(
+            f"colour {where} is {array[row].tolist()}, expected 0 to 1; divide by the largest value, or give uint8 of "
+            "0 to 255"
+        )
+    return colours
 
 
 def joined(given: Any, counts: tuple[int, int | None]) -> npt.NDArray[Any]:

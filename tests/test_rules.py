@@ -164,8 +164,6 @@ FLUENT = ("pvfiblets.codec.fibletset", "pvfiblets.streamlines")
 
 OWNERS = {
     "pvfiblets.mappers.engine_mapper",
-    "pvfiblets.plotting.fiblets.actor",
-    "pvfiblets.plotting.fiblets.selection",
     "pvfiblets.plotting.slices.stack",
     "pvfiblets.plotting.slices.workspace",
     "pvfiblets.web.app",

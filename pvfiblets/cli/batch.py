@@ -6,9 +6,15 @@ import argparse
 import sys
 from typing import Any
 
-from pvfiblets.cli.file_arguments import add_sampling_options
+from pvfiblets.cli.file_arguments import (
+    add_coding_options,
+    add_grid_options,
+    add_matrix_options,
+    add_sampling_options,
+)
 from pvfiblets.cli.files import print_json, show_progress, which_per_point
 from pvfiblets.cli.pipes import add_image_options, add_space_option, add_surface_option
+from pvfiblets.cli.values import angle, count
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
 _ABOUT = {
@@ -23,7 +29,7 @@ _ABOUT = {
 _REGION = "a region: sphere:X,Y,Z,R or box:XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX (mm), IMAGE, or IMAGE:LABEL,LABEL; repeatable"
 
 
-def add_options(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:
+def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``batch`` to a parser."""
     parser.description = (
         "Apply an operation to each FILE of a cohort, on all cores of this machine or on a dask cluster. Files go "
@@ -36,12 +42,12 @@ def add_options(parser: argparse.ArgumentParser, positive: Any, angle: Any, coun
     made = {name: operations.add_parser(name, help=about, description=f"{about[0].upper()}{about[1:]}.")
             for name, about in _ABOUT.items()}  # fmt: skip
     for name, sub in made.items():
-        _common(sub, count)
-        globals()[f"_{name}"](sub, positive, angle, count)
+        _common(sub)
+        globals()[f"_{name}"](sub)
     parser.set_defaults(run="pvfiblets.cli.batch:batch")
 
 
-def _common(parser: argparse.ArgumentParser, count: Any) -> None:
+def _common(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("sources", metavar="FILE", nargs="+", help="tractograms, or patterns between quotes: 'sub-*/dwi/*.trk'")
     add("-o", "--output", required=True, metavar="OUT", help="output folder")
@@ -64,37 +70,25 @@ def _common(parser: argparse.ArgumentParser, count: Any) -> None:
     add("--json", action="store_true", help="print the result as one JSON object")
 
 
-def _convert(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
+def _convert(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("--to", default=".fiblets", metavar="SUFFIX", help="format to write, such as .trk (default: %(default)s)")
-    add("--step", type=positive, metavar="MM", help="resample to this distance")
-    add("--max-error", type=positive, metavar="MM", help="error bound of every point")
-    add("--max-angle", type=angle, default=DEFAULT_ANGLE, metavar="DEG", help="error bound of directions, or none")
-    add("--effort", choices=("fast", "high"), default="fast", help="high: slower, less mean error")
-    add("--per-point", action="append", default=[], metavar="all|none|NAME", help="per-point arrays to keep")
-    add("--per-point-bits", type=int, choices=(8, 16), default=8, help="bits of each kept value, or more (default: 8)")
-    add("--exact", action=argparse.BooleanOptionalAction, default=None, help="keep every bit of the points, or "
-                                                                             "compress them")
+    add_coding_options(parser)
 
 
-def _verify(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
+def _verify(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--original", metavar="PATH", help="the source of each file: 'raw/{folder}/{stem}.trk'")
     parser.add_argument("--max-angle", type=angle, default=DEFAULT_ANGLE, metavar="DEG", help="bound of directions, "
                                                                                               "or none")
 
 
-def _density(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
-    add = parser.add_argument
-    grid = parser.add_mutually_exclusive_group(required=True)
-    grid.add_argument("--voxel", type=positive, nargs="+", metavar="MM", help="side length of the voxels, or three")
-    grid.add_argument("--like", metavar="IMAGE", help="an image with the grid to use")
-    add("--contrast", default="count", metavar="WHAT", help="count, length, direction, an array, or a file of values")
-    add("--weights", metavar="WHAT", help="weights of streamlines: a file of numbers, or the name of an array")
-    add("--ends-only", action="store_true", help="count end points instead")
-    add("--to", default=".nii.gz", metavar="SUFFIX", help=".nii, .nii.gz, .mif, .mif.gz or .vti (default: %(default)s)")
+def _density(parser: argparse.ArgumentParser) -> None:
+    add_grid_options(parser)
+    parser.add_argument("--to", default=".nii.gz", metavar="SUFFIX",
+                        help=".nii, .nii.gz, .mif, .mif.gz or .vti (default: %(default)s)")  # fmt: skip
 
 
-def _select(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
+def _select(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     for option, what in (
         ("--passes", "streamlines that pass through"), ("--avoids", "streamlines that do not pass through"),
@@ -107,23 +101,20 @@ def _select(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: A
     add("--to", default=".fiblets", metavar="SUFFIX", help="format to write (default: %(default)s)")
 
 
-def _profile(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
+def _profile(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--values", required=True, metavar="NAME|IMAGE",
                         help="a per-point array, curvature, arc_length, or an image to sample")  # fmt: skip
     parser.add_argument("--positions", type=count, default=100, metavar="N", help="places along a bundle (default: "
                                                                                   "%(default)s)")
 
 
-def _connectome(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
-    add = parser.add_argument
-    add("--labels", required=True, metavar="IMAGE", help="label image of parcels: 'atlas/sub-{subject}.nii.gz'")
-    add("--weights", metavar="NAME|FILE", help="weights of streamlines, such as SIFT2's")
-    add("--contrast", default="count", metavar="NAME|FILE", help="count, length, or numbers by name or from a file")
-    add("--radius", type=float, default=4.0, metavar="MM", help="search radius about an end (default: %(default)s)")
-    add("--statistic", choices=("sum", "mean", "min", "max"), help="statistic of a pair's values")
+def _connectome(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--labels", required=True, metavar="IMAGE",
+                        help="label image of parcels: 'atlas/sub-{subject}.nii.gz'")  # fmt: skip
+    add_matrix_options(parser)
 
 
-def _sample(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
+def _sample(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--image", required=True, metavar="IMAGE", help="one number per voxel: 'fa/sub-{subject}.nii'")
     add_sampling_options(parser)
     parser.add_argument("--to", default=".txt", metavar="SUFFIX", help=".txt, .csv or .npy of numbers, .tsf, or a "

@@ -21,7 +21,7 @@ from pvfiblets.cli.batch import add_options as add_batch_options
 from pvfiblets.cli.memory import held_to
 from pvfiblets.cli.parser import Commands, Parser
 from pvfiblets.cli.pipes import Pipes
-from pvfiblets.cli.values import angle, count, positive
+from pvfiblets.cli.values import count, positive
 from pvfiblets.errors import EXPECTED, sentence
 from pvfiblets.support.nifti_space import nifti_space
 from pvfiblets.support.surface_space import as_stored
@@ -96,7 +96,7 @@ def make_parser() -> argparse.ArgumentParser:
     files.add_sample(commands)
     batch = commands.add_parser("batch", help="apply one of these to each file of a cohort, on all cores or on a "
                                               "cluster")
-    add_batch_options(batch, positive, angle, count)
+    add_batch_options(batch)
     scenes.add_screenshot(commands)
     scenes.add_show(commands)
     scenes.add_page(commands)
@@ -148,6 +148,8 @@ def _add_demo(commands: Commands) -> None:
 
 
 def _add_report(commands: Commands) -> None:
+    from pvfiblets.report.studies import ONLY_NAMED, chosen_names
+
     report = commands.add_parser(
         "report",
         help="measure error against run time of every approximation and of other methods",
@@ -155,8 +157,7 @@ def _add_report(commands: Commands) -> None:
     )
     report.add_argument(
         "--only", nargs="+", metavar="STUDY",
-        help="codec, decode, tractograms, pixels, culling, tubes, volumes, halos, features, antialias, "
-        "translucency, query, stability; only by name, speed alone: speed, lines, card, reading, work",
+        help=f"{', '.join(chosen_names())}; only by name, speed alone: {', '.join(ONLY_NAMED)}",
     )  # fmt: skip
     report.add_argument(
         "--data", nargs="+", default=[], metavar="FILE",

@@ -20,53 +20,12 @@ def add_convert(commands: Commands) -> None:
     )
     convert.add_argument("source", metavar="IN", help="a tractogram of any format, or -")
     convert.add_argument("target", metavar="OUT", help="output file: .fiblets, .tck, .trk, .trx, .vtk or .vtp; or -")
-    convert.add_argument(
-        "--step", type=positive, metavar="MM", help="resample to this distance, keeping corners (default: keep the "
-                                                    "points)"
-    )
-    convert.add_argument(
-        "--max-error",
-        type=positive,
-        metavar="MM",
-        help="error bound of every point (default: a tenth of a step, or 1/4000 of the extent for uneven or coarse "
-             "lines if that is less)",
-    )
-    convert.add_argument(
-        "--max-angle",
-        type=angle,
-        default=DEFAULT_ANGLE,
-        metavar="DEG",
-        help="error bound of directions at segments longer than a pixel of a full-screen view "
-        f"(default: {DEFAULT_ANGLE:g}); none: no bound, for smaller files with a coarse --max-error",
-    )
-    convert.add_argument(
-        "--effort", choices=("fast", "high"), default="fast", help="high: slower, with a smaller mean error at the "
-                                                                   "same size"
-    )
-    convert.add_argument(
-        "--per-point",
-        action="append",
-        default=[],
-        metavar="all|none|NAME",
-        help="per-point arrays to keep; repeat for several names (default: the arrays that fit into 16 bytes a "
-             "point, in the order of IN). convert and info list the other arrays",
-    )
-    convert.add_argument(
-        "--per-point-bits", type=int, choices=(8, 16), default=8,
-        help="bits of each kept value, or more if its error bound needs them (default: 8)",
-    )  # fmt: skip
+    add_coding_options(convert)
     convert.add_argument(
         "--max-value-error", type=float, metavar="NUMBER",
         help="error bound of kept values, in their unit (default: 1/255 of the range from the 1st to the 99th "
              "percentile)",
     )  # fmt: skip
-    convert.add_argument(
-        "--exact",
-        action=argparse.BooleanOptionalAction,
-        default=None,
-        help="keep every bit of the points, or compress them in any case (default: exact below a megabyte without "
-             "options of compression, and where compression would take more bytes)",
-    )
     convert.add_argument(
         "--shards",
         type=bytes_of_file,
@@ -101,6 +60,52 @@ def add_convert(commands: Commands) -> None:
     _quiet_and_json(convert)
     add_memory_option(convert)
     convert.set_defaults(run="pvfiblets.cli.files:convert")
+
+
+def add_coding_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of compression."""
+    parser.add_argument(
+        "--step", type=positive, metavar="MM", help="resample to this distance, keeping corners (default: keep the "
+                                                    "points)"
+    )
+    parser.add_argument(
+        "--max-error",
+        type=positive,
+        metavar="MM",
+        help="error bound of every point (default: a tenth of a step, or 1/4000 of the extent for uneven or coarse "
+             "lines if that is less)",
+    )
+    parser.add_argument(
+        "--max-angle",
+        type=angle,
+        default=DEFAULT_ANGLE,
+        metavar="DEG",
+        help="error bound of directions at segments longer than a pixel of a full-screen view "
+        f"(default: {DEFAULT_ANGLE:g}); none: no bound, for smaller files with a coarse --max-error",
+    )
+    parser.add_argument(
+        "--effort", choices=("fast", "high"), default="fast", help="high: slower, with a smaller mean error at the "
+                                                                   "same size"
+    )
+    parser.add_argument(
+        "--per-point",
+        action="append",
+        default=[],
+        metavar="all|none|NAME",
+        help="per-point arrays to keep; repeat for several names (default: the arrays that fit into 16 bytes a "
+             "point, in the order of IN). convert and info list the other arrays",
+    )
+    parser.add_argument(
+        "--per-point-bits", type=int, choices=(8, 16), default=8,
+        help="bits of each kept value, or more if its error bound needs them (default: 8)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--exact",
+        action=argparse.BooleanOptionalAction,
+        default=None,
+        help="keep every bit of the points, or compress them in any case (default: exact below a megabyte without "
+             "options of compression, and where compression would take more bytes)",
+    )
 
 
 def add_info(commands: Commands) -> None:
@@ -154,6 +159,16 @@ def add_density(commands: Commands) -> None:
     )
     parser.add_argument("source", metavar="IN", help="a tractogram of any format, or -; it is read in parts")
     parser.add_argument("target", metavar="OUT", help="output file: .nii, .nii.gz, .mif, .mif.gz or .vti; or -")
+    add_grid_options(parser)
+    add_format_option(parser, reads=["source"], writes="target", usual="nii")
+    add_image_options(parser)
+    _quiet_and_json(parser)
+    add_memory_option(parser)
+    parser.set_defaults(run="pvfiblets.cli.density:density")
+
+
+def add_grid_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a density map."""
     grid = parser.add_mutually_exclusive_group(required=True)
     grid.add_argument("--voxel", type=positive, nargs="+", metavar="MM", help="side length of the voxels, or three")
     grid.add_argument("--like", metavar="IMAGE", help="an image with the grid to use (NIfTI, MGH, MIF, NRRD ...)")
@@ -170,11 +185,6 @@ def add_density(commands: Commands) -> None:
         help="weights of streamlines, such as SIFT2's: a file of numbers, or the name of an array",
     )
     parser.add_argument("--ends-only", action="store_true", help="count end points instead")
-    add_format_option(parser, reads=["source"], writes="target", usual="nii")
-    add_image_options(parser)
-    _quiet_and_json(parser)
-    add_memory_option(parser)
-    parser.set_defaults(run="pvfiblets.cli.density:density")
 
 
 def add_connectome(commands: Commands) -> None:
@@ -188,25 +198,30 @@ def add_connectome(commands: Commands) -> None:
     matrix.add_argument("source", metavar="IN", help="a tractogram of any format, or -")
     matrix.add_argument("labels", metavar="LABELS", help="an image of whole numbers, 0 for no parcel")
     matrix.add_argument("target", metavar="OUT", help="a .csv, .tsv, .txt or .npy file; or -")
-    matrix.add_argument("--weights", metavar="NAME|FILE", help="weights of streamlines, such as SIFT2's")
-    matrix.add_argument(
-        "--contrast", default="count", metavar="NAME|FILE|IMAGE",
-        help="'count' (default), 'length', or numbers: an array, a file of values, or the mean of an image along each",
-    )  # fmt: skip
-    matrix.add_argument(
-        "--radius", type=float, default=4.0, metavar="MM",
-        help="search radius for the parcel of an end; 0: the end's own voxel (default: %(default)s)",
-    )  # fmt: skip
-    matrix.add_argument(
-        "--statistic",
-        choices=("sum", "mean", "min", "max"),
-        help="statistic of a pair's values (default: sum of counts, otherwise mean)",
-    )
+    add_matrix_options(matrix)
     add_format_option(matrix, reads=["source"], writes="target", usual="csv")
     add_image_options(matrix)
     json_option(matrix)
     add_memory_option(matrix)
     matrix.set_defaults(run="pvfiblets.cli.connectome:connectome")
+
+
+def add_matrix_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a connectome."""
+    parser.add_argument("--weights", metavar="NAME|FILE", help="weights of streamlines, such as SIFT2's")
+    parser.add_argument(
+        "--contrast", default="count", metavar="NAME|FILE|IMAGE",
+        help="'count' (default), 'length', or numbers: an array, a file of values, or the mean of an image along each",
+    )  # fmt: skip
+    parser.add_argument(
+        "--radius", type=float, default=4.0, metavar="MM",
+        help="search radius for the parcel of an end; 0: the end's own voxel (default: %(default)s)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--statistic",
+        choices=("sum", "mean", "min", "max"),
+        help="statistic of a pair's values (default: sum of counts, otherwise mean)",
+    )
 
 
 def add_table(commands: Commands) -> None:

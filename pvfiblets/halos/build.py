@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.lines import Lines, are_words, flat, gather, joined, numbers_or_colours, refuse_words
+from pvfiblets.lines import Lines, are_words, flat, gather, joined, numbers_or_colours, numbers_or_rgba, refuse_words
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.vtk_space import space_of_dataset, to_ras
 
@@ -216,30 +216,8 @@ def _points_of_vtk(mesh: Any) -> tuple[Array, _Rows, str]:
 
 def _values(array: Array, name: str, rgb: bool | None) -> Array:
     """Numbers as they are, magnitudes of vectors, colours as float32 RGBA in 0..1."""
-    array = numbers_or_colours(array, name, rgb)
-    if array.ndim == 1:
-        if rgb:
-            raise ValueError(
-                f"rgb=True asks for colours, but {name!r} has one number in each row; drop rgb, or give 3 or 4 columns"
-            )
-        return array
-    if array.ndim != 2 or array.shape[1] not in (3, 4):
-        raise ValueError(
-            f"{name!r} has the shape {array.shape} and type {array.dtype}, expected one number in each row, a "
-            "vector, or 3 or 4 columns of colour with rgb=True"
-        )
-    colours = np.ones((len(array), 4), np.float32)
-    colours[:, : array.shape[1]] = array
-    if array.dtype == np.uint8:
-        colours[:, : array.shape[1]] /= 255.0
-    outside = ~((colours >= 0.0) & (colours <= 1.0)).all(axis=1)
-    if outside.any():
-        row = int(np.argmax(outside))
-        raise ValueError(
-            f"colour {row} of {name!r} is {array[row].tolist()}, expected 0 to 1; divide by the largest value, or give "
-            "uint8 of 0 to 255"
-        )
-    return colours
+    found = numbers_or_rgba(numbers_or_colours(array, name, rgb), name, rgb)
+    return found if found.ndim == 1 else found.astype(np.float32)
 
 
 def _numbers(array: Array, name: str) -> Array:

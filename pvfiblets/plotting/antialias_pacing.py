@@ -8,7 +8,7 @@ import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from vtkmodules.vtkCommonCore import vtkCommand
+from pvfiblets.mappers.frames.observers import observe, weakly
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -41,7 +41,7 @@ class Pacer:
         self.by_hand = False  # whether somebody else calls for the samples
         self._timer: int | None = None
         self._due = 0.0
-        self._tag: int | None = None
+        self._end: Callable[[], None] | None = None
         self._call: Any = None
 
     @property
@@ -78,8 +78,8 @@ class Pacer:
 
     def _ask_timer(self, interactor: vtkRenderWindowInteractor, wait: float) -> None:
         self._stop_timer(interactor)
-        if self._tag is None:
-            self._tag = interactor.AddObserver(vtkCommand.TimerEvent, _weakly(self._heard))
+        if self._end is None:
+            self._end = observe(interactor, ("TimerEvent",), weakly(self._heard))
         self._due = time.monotonic() + wait
         # PyVista calls the callbacks of `add_timer_event` at every timer's event: wait for its own timers.
         theirs = getattr(self._plotter.iren, "_timer", None)
@@ -110,7 +110,7 @@ class Pacer:
         except RuntimeError:
             return
         self._stop_call()
-        self._call = loop.call_later(wait, _weakly(self._called))
+        self._call = loop.call_later(wait, weakly(self._called))
 
     def _stop_call(self) -> None:
         call, self._call = self._call, None
@@ -129,18 +129,6 @@ class Pacer:
         self._stop_call()
         if interactor is not None:
             self._stop_timer(interactor)
-            if self._tag is not None:
-                interactor.RemoveObserver(self._tag)
-        self._tag = None
-
-
-def _weakly(method: Callable[[], None]) -> Callable[..., None]:
-    """Return what calls a method as long as its object lives, whatever it is called with."""
-    reference = weakref.WeakMethod(method)
-
-    def call(*_: Any) -> None:
-        alive = reference()
-        if alive is not None:
-            alive()
-
-    return call
+        if self._end is not None:
+            self._end()
+        self._end = None

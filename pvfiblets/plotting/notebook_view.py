@@ -16,6 +16,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pvfiblets.mappers.frames.observers import observe, weakly
 from pvfiblets.plotting.page.page_scene import camera_place, page_and_actors
 from pvfiblets.plotting.viewpoints import point_camera
 
@@ -124,9 +125,7 @@ class PageView:
 
     def _follow(self) -> None:
         """Follow the plotter's camera with the page, as long as this view exists."""
-        moved = weakref.WeakMethod(self._from_plotter)
-        tag = self._camera.AddObserver("ModifiedEvent", lambda *_: (call := moved()) and call())
-        weakref.finalize(self, self._camera.RemoveObserver, tag)
+        weakref.finalize(self, observe(self._camera, ("ModifiedEvent",), weakly(self._from_plotter)))
 
     def _from_plotter(self) -> None:
         if self.state is not None and not self._told:

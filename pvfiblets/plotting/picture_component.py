@@ -6,7 +6,7 @@ PyVista finds this module by an entry point and imports it when a plotter is fir
 from __future__ import annotations
 
 import weakref
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, fields, replace
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,7 @@ from pvfiblets.antialias import check_antialias, default_antialias, samples_of
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.mappers.engine_mapper import shows_engine
 from pvfiblets.mappers.frames.idle_windows import refine
+from pvfiblets.mappers.frames.observers import observe, weakly
 from pvfiblets.mappers.frames.scene import partly_shown
 from pvfiblets.mappers.picture.antialias_refinement import Refinement
 from pvfiblets.mappers.picture.picture import DepthOfField, Picture
@@ -74,12 +75,12 @@ class PictureComponent:
     >>> pl.picture.gamma = 1.2
     """
 
-    __slots__ = ("__weakref__", "_antialias", "_pacer", "_pictures", "_plotter", "_seconds", "_tags")
+    __slots__ = ("__weakref__", "_antialias", "_end", "_pacer", "_pictures", "_plotter", "_seconds")
 
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter = weakref.proxy(plotter)
         self._pictures: dict[str, Picture] = {}
-        self._tags: list[int] = []
+        self._end: Callable[[], None] | None = None
         self._antialias: dict[str, str | int] = {}
         self._seconds: dict[str, float | None] = {}
         self._pacer = Pacer(plotter, self.refine, self._unfinished)
@@ -317,15 +318,9 @@ class PictureComponent:
         if interactor is None:
             return
         following = bool(self._following())
-        if following and not self._tags:
-            reference = weakref.WeakMethod(self._heard)
-
-            def call(_interactor: Any, event: str) -> None:
-                alive = reference()
-                if alive is not None:
-                    alive(event)
-
-            self._tags = [interactor.AddObserver(event, call) for event in ("MouseMoveEvent", "TimerEvent")]
+        if following and self._end is None:
+            events = ("MouseMoveEvent", "TimerEvent")
+            self._end = observe(interactor, events, weakly(self._heard, passing=True))
         elif not following:
             self._ignore()
 
@@ -333,17 +328,16 @@ class PictureComponent:
         return getattr(self._plotter.iren, "interactor", None)
 
     def _ignore(self) -> None:
-        tags, self._tags = self._tags, []
-        interactor = self._interactor()
-        for tag in tags if interactor is not None else []:
-            interactor.RemoveObserver(tag)
+        if self._end is not None:
+            self._end()
+        self._end = None
 
     def _following(self) -> list[Picture]:
         """Renderers whose focus moves by itself."""
         kept = [(picture, picture.depth_of_field) for picture in self._pictures.values()]
         return [picture for picture, wanted in kept if wanted is not None and isinstance(wanted.focal_distance, str)]
 
-    def _heard(self, event: str) -> None:
+    def _heard(self, _interactor: Any, event: str) -> None:
         """Render if the focus moves and nothing else renders, as while the mouse turns the camera."""
         interactor = self._interactor()
         style = interactor.GetInteractorStyle()
@@ -361,7 +355,7 @@ class PictureComponent:
     def _rendered(self, _plotter: Any = None) -> None:
         for picture in self._pictures.values():
             picture.raise_pending()
-        interactor = self._interactor() if self._tags else None
+        interactor = None if self._end is None else self._interactor()
         if (
             interactor is not None
             and interactor.GetInitialized()

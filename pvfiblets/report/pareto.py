@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
+
+import numpy as np
 
 from .record import Axes, Record
 
 
 def pareto(points: Sequence[tuple[float, float]]) -> list[bool]:
     """Return whether each point lies on the Pareto front, less being better."""
-    on = [False] * len(points)
-    finite = [i for i, point in enumerate(points) if all(map(math.isfinite, point))]
-    least, before = math.inf, math.inf  # the least y so far, and where it was first reached
-    for i in sorted(finite, key=lambda i: points[i]):
-        x, y = points[i]
-        if y < least:
-            least, before = y, x
-            on[i] = True
-        elif y == least and x == before:
-            on[i] = True
-    return on
+    values = np.array(points, np.float64).reshape(-1, 2)
+    finite = np.isfinite(values).all(axis=1)
+    others, each = values[finite], values[:, None]
+    worse = np.all(others <= each, axis=2) & np.any(others < each, axis=2)
+    found: list[bool] = (finite & ~worse.any(axis=1)).tolist()
+    return found
 
 
 def mark_fronts(records: Iterable[Record], axes: Iterable[Axes]) -> None:

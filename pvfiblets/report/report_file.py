@@ -10,14 +10,14 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, is_dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args, get_origin, get_type_hints
 
 from pvfiblets.errors import FormatError
 
-from .record import Axes, CaseResult, Figure, LeftOut, Record, StudyResult, Timing
+from .record import StudyResult
 
 FORMAT = "pvfiblets report 1"
 NAME = "report.json"
@@ -47,7 +47,7 @@ class Report:
             found = data.get("format") if isinstance(data, Mapping) else type(data).__name__
             raise FormatError(path, None, f"the format {found!r}", f"{FORMAT!r}, as `pvfiblets report` writes it")
         try:
-            return cls(dict(data["about"]), [_study(study) for study in data["studies"]])
+            return cls(dict(data["about"]), _made(list[StudyResult], data["studies"]))
         except (KeyError, TypeError, AttributeError) as error:
             raise FormatError(
                 path, None, f"a report that lacks or adds something ({error})", "one as written"
@@ -109,44 +109,17 @@ def _as_written(study: StudyResult) -> dict[str, Any]:
     return plain
 
 
-def _as_named(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Undo the names of a file."""
-    here = {written: name for name, written in AS_WRITTEN.items()}
-    return {here.get(name, name): value for name, value in data.items()}
-
-
-def _number(value: float | None) -> float:
-    return math.nan if value is None else float(value)
-
-
-def _figures(data: Mapping[str, Any]) -> dict[str, Figure]:
-    return {name: Figure(_number(figure["value"]), figure["unit"]) for name, figure in data.items()}
-
-
-def _timing(data: Mapping[str, Any]) -> Timing:
-    numbers = {name: _number(data[name]) for name in ("median", "low", "high", "items")}
-    return Timing(repeats=int(data["repeats"]), item=data["item"], clock=data["clock"], **numbers)
-
-
-def _record(data: Mapping[str, Any]) -> Record:
-    inner: dict[str, Any] = {
-        "errors": _figures(data["errors"]),
-        "costs": _figures(data["costs"]),
-        "times": {name: _timing(timing) for name, timing in data["times"].items()},
-    }
-    return Record(**{**_as_named(data), **inner})
-
-
-def _case(data: Mapping[str, Any]) -> CaseResult:
-    measured = Figure(_number(data["measured"]["value"]), data["measured"]["unit"])
-    return CaseResult(**{**data, "measured": measured, "limit": _number(data["limit"])})
-
-
-def _study(data: Mapping[str, Any]) -> StudyResult:
-    lists: dict[str, Any] = {
-        "axes": [Axes(**_as_named(axes)) for axes in data["axes"]],
-        "records": [_record(record) for record in data["records"]],
-        "left_out": [LeftOut(**item) for item in data["left_out"]],
-        "cases": [_case(item) for item in data.get("cases", [])],
-    }
-    return StudyResult(**{**data, **lists})
+def _made(kind: Any, value: Any) -> Any:
+    """Return a value of a type from its plain form in a file: a dataclass, a list or dict of some, or a number."""
+    inner = get_args(kind)
+    if get_origin(kind) is list:
+        return [_made(inner[0], item) for item in value]
+    if get_origin(kind) is dict:
+        return {key: _made(inner[1], item) for key, item in value.items()}
+    if isinstance(kind, type) and is_dataclass(kind):
+        here, kinds = {written: name for name, written in AS_WRITTEN.items()}, get_type_hints(kind)
+        fields = {here.get(name, name): item for name, item in value.items()}
+        return kind(**{name: _made(kinds[name], item) for name, item in fields.items()})
+    if kind is float:
+        return math.nan if value is None else float(value)
+    return value

@@ -78,7 +78,7 @@ def one_study(name: str, options: Options, keep: Callable[[StudyResult], None] =
     """Run one study; where it cannot be done, return the reason. ``keep`` is called after each record."""
     study = studies.find(name)
     result = StudyResult(study.name, study.title, study.approximates, list(study.notes), list(study.axes))
-    result.across, result.left_out = list(getattr(study, "across", ())), options.left_out
+    result.across, result.left_out = list(study.across), options.left_out
     options.log(f"{name}: {study.title}")
     try:
         for found in study.run(options):

@@ -1,10 +1,7 @@
 """The interface of a study, and its input: options, and a budget of time that it keeps to.
 
-A study is an object with ``name``, ``title``, ``approximates`` (one sentence: the approximation and its reference),
-``axes`` (pairs of figures to plot), ``notes``, and ``run(options)``, which yields records as they are measured. It
-skips impossible measurements with a reason (:meth:`Options.leave_out`); if it cannot measure anything (no GPU, no
-data, a package that is missing) it raises :class:`Unavailable`, and the report names it with that reason. If it has
-``across`` as well, paths of figures, one table shows these of all data sets.
+A study skips impossible measurements with a reason (:meth:`Options.leave_out`); if it cannot measure anything (no GPU,
+no data, a package that is missing) it raises :class:`Unavailable`, and the report names it with that reason.
 """
 
 from __future__ import annotations
@@ -14,7 +11,6 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Protocol
 
 from .record import Axes, CaseResult, LeftOut, Record
 
@@ -97,15 +93,14 @@ class Options:
         return False
 
 
-class Study(Protocol):
+@dataclass(frozen=True)
+class Study:
     """One approximation, measured beside its baselines."""
 
     name: str
     title: str
-    approximates: str
-    axes: Sequence[Axes]
-    notes: Sequence[str]
-
-    def run(self, options: Options) -> Iterator[Record | CaseResult]:
-        """Yield records, and results of extreme cases, as they are measured."""
-        ...
+    approximates: str  # One sentence: the approximation and its reference
+    axes: Sequence[Axes]  # Pairs of figures to plot
+    notes: Sequence[str]  # Paragraphs for the reader
+    run: Callable[[Options], Iterator[Record | CaseResult]]  # Yields records and results of cases as they are measured
+    across: Sequence[str] = ()  # Paths of figures that one table shows of all data sets

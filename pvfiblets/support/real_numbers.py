@@ -1,11 +1,14 @@
-"""Arrays of users as real numbers."""
+"""Numbers and arrays of users as real numbers."""
 
 from __future__ import annotations
+
+import math
+from numbers import Real
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["real_numbers"]
+__all__ = ["is_number", "real_numbers"]
 
 
 def real_numbers(given: npt.ArrayLike, what: str) -> npt.NDArray[np.float64]:
@@ -19,3 +22,8 @@ def real_numbers(given: npt.ArrayLike, what: str) -> npt.NDArray[np.float64]:
     if array.dtype.kind not in "fiub":
         raise ValueError(f"{what} have the type {array.dtype}, expected real numbers")
     return array.astype(np.float64, copy=False)
+
+
+def is_number(value: object) -> bool:
+    """Return whether a value is a finite number, of NumPy's or of Python's, and no bool."""
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .brain import brain
-from .tracking import BUNDLES, LENGTHS, SMALLEST_RADIUS, brain_streamlines, iter_brain_streamlines
+from .tracking import BUNDLES, LENGTHS, SMALLEST_RADIUS, brain_streamlines, iter_brain_streamlines, streamline_count
 from .tubes import TUBE_SETS, tube_set
 
 __all__ = [
@@ -14,5 +14,6 @@ __all__ = [
     "brain",
     "brain_streamlines",
     "iter_brain_streamlines",
+    "streamline_count",
     "tube_set",
 ]

@@ -108,6 +108,11 @@ _BUNDLES: dict[str, tuple[float, _Points, _Points, list[float], tuple[bool, bool
 BUNDLES = tuple(_BUNDLES)
 
 
+def streamline_count(segments: float, step: float) -> int:
+    """Return how many streamlines of a step, mm, have about so many segments: they are 94 mm long on average."""
+    return max(round(segments * step / 94.0), 1)
+
+
 def brain_streamlines(
     n_streamlines: int,
     step: float = 0.5,
@@ -176,18 +181,7 @@ def iter_brain_streamlines(
     wander: float = 4.0,
     fa: bool = False,
 ) -> Iterator[Streamlines]:
-    """Make the streamlines of :func:`brain_streamlines` in consecutive chunks of bounded memory.
-
-    Parameters
-    ----------
-    n_streamlines, step, seed, noise, wander, fa
-        As for :func:`brain_streamlines`.
-
-    Yields
-    ------
-    Streamlines
-        At most ``CHUNK`` streamlines each, without groups.
-    """
+    """Make the streamlines of :func:`brain_streamlines` in chunks of at most ``CHUNK`` each, without groups."""
     if n_streamlines < 0:
         raise ValueError(f"n_streamlines is {n_streamlines}; give 0 or more")
     if not 0.0 < step <= LENGTHS[0]:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..images.sources import as_image, is_image
-from ..lines import Lines, flat, gather, joined, numbers_or_colours, refuse_words
+from ..lines import Lines, flat, gather, joined, numbers_or_colours, numbers_or_rgba, refuse_words
 from .spline_tubes import Doubles, NodeValues, SplineTubes, chord_lengths
 from .tangents import METHODS, Steps, derivatives
 
@@ -212,7 +212,7 @@ class _Builder:
             if slopes is not None:
                 raise ValueError(f"scalar_slopes came with {name!r} of whole lines, which have none; leave them out")
             return {}, {**tube_values, name: array}
-        values = self._values(array, name, rgb)
+        values = numbers_or_rgba(array[self.lines.ids], name, rgb, self._where).astype(np.float64, copy=False)
         if slopes is None:
             found = derivatives(values, self.steps, self.method)
         else:
@@ -222,31 +222,6 @@ class _Builder:
             self._check(found, "scalar_slopes", "finite numbers; leave them out to have them computed")
             found[self.single] = 0.0
         return {name: NodeValues(self._nodes(values), self._nodes(found))}, tube_values
-
-    def _values(self, array: npt.NDArray[Any], name: str, rgb: bool | None) -> Doubles:
-        """Numbers, or colours as RGBA of 0..1, for each row, from an array with an entry for each point."""
-        if array.ndim == 1:
-            if rgb:
-                raise ValueError(
-                    f"rgb=True asks for colours, but {name!r} has one number for each point; drop rgb, or give "
-                    "(n_points, 3) or (n_points, 4) colours"
-                )
-            return array[self.lines.ids].astype(np.float64)
-        if array.ndim != 2 or array.shape[1] not in (3, 4):
-            raise ValueError(
-                f"{name!r} has the shape {array.shape} and type {array.dtype}, expected (n_points,) numbers, "
-                "(n_points, k) vectors, or (n_points, 3 or 4) colours with rgb=True"
-            )
-        colours = np.ones((len(self.places), 4))
-        colours[:, : array.shape[1]] = array[self.lines.ids] / (255.0 if array.dtype == np.uint8 else 1.0)
-        outside = ~((colours >= 0.0) & (colours <= 1.0)).all(axis=1)
-        if outside.any():
-            row = int(np.argmax(outside))
-            raise ValueError(
-                f"colour {self._where(row)} is {array[self.lines.ids[row]].tolist()}, expected 0 to 1; "
-                "divide by the largest value, or give uint8 of 0 to 255"
-            )
-        return colours
 
     def _per_row(self, given: Any, what: str, shape: tuple[int, ...], meaning: str) -> Doubles:
         """A float64 array with a row of this shape for each row, of a number, a name, or an array."""

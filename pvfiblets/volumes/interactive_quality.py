@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from numbers import Real
 from typing import Any
+
+from pvfiblets.support.real_numbers import is_number
 
 from .raycast_options import PROJECTIONS, RaycastOptions
 
@@ -33,12 +33,12 @@ class InteractiveQuality:
             if unknown := set(quality) - {"step", "sparse"}:
                 raise ValueError(f"interactive_quality has {sorted(map(str, unknown))}; give 'step' and 'sparse'")
             step, sparse = quality.get("step", 1.0), quality.get("sparse", 1)
-            if not _is_number(step) or not 1.0 <= step <= LARGEST_STEP:
+            if not is_number(step) or not 1.0 <= step <= LARGEST_STEP:
                 raise ValueError(f"interactive_quality['step'] is {step!r}; give a factor of 1 or more")
             if sparse not in (1, 2, 4):
                 raise ValueError(f"interactive_quality['sparse'] is {sparse!r}; give 1, 2 or 4 pixels")
             return None if (step, sparse) == (1, 1) else cls(float(step), int(sparse), exactly=True)
-        if not _is_number(quality) or not 0.0 <= quality <= 1.0:
+        if not is_number(quality) or not 0.0 <= quality <= 1.0:
             raise ValueError(
                 f"interactive_quality is {quality!r}; give a number from 0 to 1, or "
                 "{'step': factor, 'sparse': pixels}"
@@ -58,7 +58,3 @@ class InteractiveQuality:
         refine = "regula-falsi" if casting.exact and casting.mode in PROJECTIONS else casting.refine
         sparse = max(casting.sparse, self.sparse)
         return replace(casting, step=step, sparse=sparse, integrator=integrator, refine=refine)
-
-
-def _is_number(given: Any) -> bool:
-    return isinstance(given, Real) and not isinstance(given, bool) and math.isfinite(given)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from pvfiblets import formats
+from pvfiblets.cli.command import main
 from pvfiblets.codec.encoding.compress import compress
 from pvfiblets.report import drawing, run, studies, timing
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record
@@ -204,6 +205,7 @@ class FakeStudy:
     """Takes so many seconds for each measurement, and asks its budget before each."""
 
     title, approximates, notes = "Fake", "nothing", ("a note",)
+    across = ()
     axes = (Axes("cost", "costs/size", "errors/max", "x", "y"),)
 
     def __init__(self, name, clock, seconds, wanted):
@@ -332,9 +334,16 @@ def test_registered_studies_are_what_they_say(name):
     assert studies.chosen_names([name]) == [name]
 
 
+def test_the_commands_help_names_all_studies(capsys):
+    with pytest.raises(SystemExit):
+        main(["report", "--help"])
+    told = " ".join(capsys.readouterr().out.split())
+    assert set(studies.MODULES) <= set(told.replace(",", " ").replace(";", " ").replace(":", " ").split())
+
+
 def test_a_study_that_draws_has_a_context_and_the_report_its_driver(gl, monkeypatch, tmp_path):
     class Drawing:
-        name, title, approximates, axes, notes = "drawing", "Drawing", "", (), ()
+        name, title, approximates, axes, notes, across = "drawing", "Drawing", "", (), (), ()
 
         def run(self, options):
             with drawing.drawing_context(options) as ctx:

@@ -1,9 +1,9 @@
-"""Rays at tubes, lenses and what float64 says of them: what the study of tubes measures by."""
+"""Rays at tubes, cameras and what float64 says of them: what the study of tubes measures by."""
 
 import numpy as np
 import pytest
 
-from pvfiblets.report.cameras import Lens, orbit
+from pvfiblets.report.cameras import orbit
 from pvfiblets.report.studies.tubes.pictures import helices
 from pvfiblets.report.studies.tubes.rays import Rays, of_class, of_set
 from pvfiblets.report.studies.tubes.sweeps import lengthwise
@@ -48,17 +48,15 @@ def test_rays_are_aimed_at_their_halves_at_angles_asked_for(tubes):
         np.testing.assert_allclose(np.degrees(np.arctan2(across, along)), degrees, atol=1e-9)
 
 
-def test_a_lens_is_the_orbits_camera(tubes):
+def test_rays_of_pixels_are_projected_to_them(tubes):
     camera = orbit(tubes, "close", 4, (160, 90))[1]
-    lens = Lens.from_camera(camera)
-    np.testing.assert_allclose(lens.model_view_projection, camera.model_view_projection, rtol=1e-12)
     pixels = np.array([0, 159, 7250, 160 * 90 - 1])
-    directions, forwards = lens.rays(pixels)
-    w = np.array([lens.near, 0.5 * (lens.near + lens.far), lens.far, lens.near])
-    points = lens.eye + (w / forwards)[:, None] * directions
+    directions, forwards = camera.rays(pixels)
+    w = np.array([camera.near, 0.5 * (camera.near + camera.far), camera.far, camera.near])
+    points = camera.eye + (w / forwards)[:, None] * directions
     clip = np.column_stack([points, np.ones(4)]) @ camera.model_view_projection.T
     ndc = clip[:, :3] / clip[:, 3:]
     np.testing.assert_allclose((ndc[:, 0] + 1.0) * 80.0, pixels % 160 + 0.5, atol=1e-7)
     np.testing.assert_allclose((ndc[:, 1] + 1.0) * 45.0, pixels // 160 + 0.5, atol=1e-7)
-    np.testing.assert_allclose(0.5 * (ndc[:, 2] + 1.0), lens.depth(w), atol=1e-12)
-    np.testing.assert_allclose(lens.distance(1.0 - lens.depth(w)), w, rtol=1e-9)
+    np.testing.assert_allclose(0.5 * (ndc[:, 2] + 1.0), camera.depth(w), atol=1e-12)
+    np.testing.assert_allclose(camera.distance(1.0 - camera.depth(w)), w, rtol=1e-9)

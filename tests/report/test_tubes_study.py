@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pvfiblets.report.cameras import ELEVATION, Lens, by_turns, orbit
+from pvfiblets.report.cameras import ELEVATION, Camera, by_turns, orbit
 from pvfiblets.report.record import LeftOut
 from pvfiblets.report.studies.tubes import solvers as tubes_solvers
 from pvfiblets.report.studies.tubes import study as tubes
@@ -87,13 +87,13 @@ def ball():
     """A sphere of 2 mm around (0, 0, 0), seen from 10 mm in front of it: its camera and what is right."""
     tubes_ = SplineTubes(points=[[0, 0, 0]], segments=[[0, 0]], radius=[2.0], tangents=[[0, 0, 0]], radius_slopes=[0.0],
                          scaled=True, tubes=[0], n_tubes=1)  # fmt: skip
-    lens = Lens((120, 80), np.array([0.0, -10.0, 0.0]), np.array([0.0, -1.0, 0.0]), 0.4, 5.0, 20.0)
-    return lens, Truth.from_tubes(tubes_, lens)
+    camera = Camera((120, 80), np.array([0.0, -10.0, 0.0]), np.zeros(3), 5.0, 20.0, 0.4)
+    return camera, Truth.from_tubes(tubes_, camera)
 
 
 def test_what_is_right_is_a_balls_own_formula_and_errors_are_in_radii_and_pixels():
-    lens, truth = ball()
-    directions, _ = lens.rays(np.arange(120 * 80))
+    camera, truth = ball()
+    directions, _ = camera.rays(np.arange(120 * 80))
     towards = directions @ [0.0, 10.0, 0.0]
     inside = towards**2 - (100.0 - 4.0)
     assert np.array_equal(truth.there, inside >= 0.0)
@@ -107,10 +107,9 @@ def test_what_is_right_is_a_balls_own_formula_and_errors_are_in_radii_and_pixels
     wide = np.roll(truth.there.reshape(80, 120), 1, axis=1).ravel()  # moved by a pixel: 2/pi of one on average
     assert truth.errors(right, wide)["silhouette"] == pytest.approx(2.0 / np.pi, rel=0.05)
     camera = orbit(helices(1), "far", 2, (8, 8))[0]
-    orbiting = Lens.from_camera(camera)
-    assert orbiting.distance(1.0 - orbiting.depth(camera.far)) == pytest.approx(camera.far)
+    assert camera.distance(1.0 - camera.depth(camera.far)) == pytest.approx(camera.far)
     near = 20.0 / 1e6
-    seen = replace(truth, lens=replace(lens, near=near))
+    seen = replace(truth, camera=replace(camera, near=near))
     slope = 20.0 / (20.0 - near) * near / 8.0**2  # window depth by mm, 8 mm in front of the eye
     for name, quantum in (
         ("24 bits", 1.0 / (2**24 - 1)),
@@ -138,7 +137,7 @@ def test_a_tessellated_tube_is_as_wide_as_it_should_be(gl):
     camera = orbit(tubes_, "far", 4, (1600, 900))[0]
     drawn = MeshedTubes(gl, tubes_, (1600, 900), (6, 30))
     drawn.draw(camera)
-    _, there = drawn.visible(Lens.from_camera(camera))
+    _, there = drawn.visible(camera)
     drawn.release()
     distance = np.hypot(*(camera.eye - camera.centre)[:2])  # the tube stands upright, the camera looks down on it
     tilt = np.cos(np.radians(ELEVATION))

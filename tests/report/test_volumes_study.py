@@ -61,13 +61,9 @@ def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
     records = list(volumes.STUDY.run(options))
     assert not left
     assert options.driver.startswith(gl.info["GL_RENDERER"])
-    bounded = [record for record in records if record.data != "bare formulae"]  # unstable ones leave all bounds
-    assert all(math.isfinite(figure.value) for record in bounded for figure in record.errors.values())
+    assert all(math.isfinite(figure.value) for record in records for figure in record.errors.values())
     assert all(timing.item == "frame" and timing.median > 0.0 for record in records for timing in record.times.values())
     light = {(record.data, record.method): record for record in records if "light rms" in record.errors}
-    bare = {record.method: record.errors for record in records if record.data == "bare formulae"}
-    assert bare["riemann"]["leaves 0 to 1"].value > 0.0 == bare["preintegrated"]["leaves 0 to 1"].value
-    assert bare["preintegrated"]["max at κΔ 1000"].value < 0.1 < 1e3 < bare["riemann"]["max at κΔ 1000"].value
     assert {method for _, method in light} == set(INTEGRATORS)
     for data in dict.fromkeys(data for data, _ in light):
         assert light[data, "adaptive"].default

@@ -14,9 +14,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from pvfiblets.report.studies.volumes.reference_profiles import Profile
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import RaycastVolume
+
+from .profiles import Profile
 
 GRIDS = {
     "even": np.eye(4),

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from pvfiblets.report.studies.volumes.reference import composite, mip, rays, sample
-from pvfiblets.report.studies.volumes.reference_profiles import profiles
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import FILTERS, RaycastVolume
 
 from .analytic import GRIDS, Ball, Gaussian, Layers, camera, middle
 from .noise import SHAPE, SIZE, along, haze, noise, straight, view
+from .profiles import profiles
 
 # ----------------------------------------------------------------------------------------------------------- maxima
 
@@ -107,6 +107,23 @@ def test_an_even_block(how, alpha):
     # What comes from behind an opacity of 1 - 1e-11 is left out.
     assert np.abs(found[..., 3] - opacity).max() < 2e-11
     assert np.abs(found[..., :3] - opacity[..., None] * transfer.table[1, :3]).max() < 2e-11
+
+
+@pytest.mark.few(10)
+@pytest.mark.parametrize("depth", [0.01, 1.0, 30.0])
+@pytest.mark.parametrize("name", ["constant", "fade", "ramp", "edge", "peak", "haze", "teeth"])
+def test_the_closed_forms_are_the_integral(name, depth):
+    """By very many steps of the equation as it stands, from the profile's own functions."""
+    profile = next(p for p in profiles([depth]) if p.name == name)
+    assert abs(profile.densest * profile.length - depth) < 1e-5 * depth
+    start, end, n = 3.0, 61.0, 400_000
+    s = np.linspace(start, end, n + 1)
+    s = (s[1:] + s[:-1]) / 2
+    kappa, colour = profile.transfer.extinction(profile.value(s)), profile.transfer.colour(profile.value(s))
+    passed = np.cumsum(kappa) * (end - start) / n
+    weights = kappa * (end - start) / n * np.exp(-passed + kappa * (end - start) / n / 2)
+    expected = np.append(weights @ colour, -np.expm1(-passed[-1]))
+    assert np.abs(profile.light(start, end) - expected).max() < 2e-6
 
 
 @pytest.mark.parametrize("depth", [1e-3, 1.0, 1e3, 1e6])

@@ -134,20 +134,8 @@ def compress_file(
     check_exact(exact, step, order, max_error)
     how = ValueBounds(per_point_bits, max_value_error)
     remove_unfinished(Path(target).resolve().parent)
-    promise = None
-    if step != "auto":
-        from ..encoding.resample import resample
-
-        coarse = Survey()
-        for chunk in shown(formats.iter_chunks(source, CHUNK_POINTS), None, "surveying", progress):
-            coarse.add(resample(chunk, step))
-        promise = Parameters.choose(coarse, max_error).promise
-
-    def chunks() -> Iterator[Streamlines]:
-        for chunk in formats.iter_chunks(source, CHUNK_POINTS):
-            yield chunk if promise is None or step == "auto" else resample(chunk, step, CUT_SHARE * promise)
-
-    first = _survey(shown(chunks(), None, "surveying", progress), per_point, per_point_bits, bool(exact))
+    tracts = _Source(source, step, max_error, progress)
+    first = _survey(shown(tracts.chunks(), None, "surveying", progress), per_point, per_point_bits, bool(exact))
     found, names, raw = first.found, first.names, first.raw
     plain = is_plain(step, max_error, max_angle, effort, order)
     if exact or (exact is None and plain and raw < limits.EXACT_BELOW):
@@ -155,11 +143,7 @@ def compress_file(
     first.small.clear()
     from ..encoding.encode import Encoder  # which needs a compiler
 
-    if promise is None or step == "auto":
-        parameters = Parameters.choose(found, max_error)
-    else:
-        parameters = Parameters.of_resampled(found, promise, step)
-    encoder = Encoder(parameters, effort, max_angle)
+    encoder = Encoder(tracts.parameters(found), effort, max_angle)
     coders = value_coders(found, found.values or names, how)
     spooled = [0]
     with (
@@ -168,12 +152,12 @@ def compress_file(
         closing(_Spool(scratch, spooled)) as spool,  # before its folder goes, whatever happens
     ):
         whole = _Whole(first.behind)
-        for chunk in shown(chunks(), found.n_points, "compressing", progress):
+        for chunk in shown(tracts.chunks(), found.n_points, "compressing", progress):
             _code(chunk, encoder, coders, names, spool, whole)
         spool.close()
         # To keep them as they are, all are in memory at once, and their records.
         if exact is None and step == "auto" and grows(encoder, raw) and fits(6 * raw):
-            return _keep_exactly(chunks(), target, names, started, small)
+            return _keep_exactly(tracts.chunks(), target, names, started, small)
         tell_far(found)
         if not encoder.n_fiblets:
             spool.add_empty(coders, whole)
@@ -182,8 +166,8 @@ def compress_file(
         if ids is not None:
             spool.add("rank_to_id.npy", ids)
         spool.close()
-        if promise is not None:
-            encoder.parameters = replace(encoder.parameters, promise=promise)
+        if tracts.promise is not None:
+            encoder.parameters = replace(encoder.parameters, promise=tracts.promise)
         header_set = whole.without_records(encoder, pages, found)
         members = spool.members()
         header, more = make_header(header_set, {k: members.pop(k) for k in whole.per_point})
@@ -193,25 +177,15 @@ def compress_file(
             members |= index_members(mapped)
         write(target, header, members | more, small=small)
     seconds = time.perf_counter() - started
-    originals = chunks() if promise is None else formats.iter_chunks(source, CHUNK_POINTS)
     every = 1 if verify == "all" else max(1, round(found.n_points / SAMPLE_POINTS))
-    error = compare_file(originals, found.n_points, target, progress, every=every, max_points=CHUNK_POINTS)
-    size = Path(target).stat().st_size
+    error = compare_file(tracts.originals(), found.n_points, target, progress, every=every, max_points=CHUNK_POINTS)
     return {
-        "streamlines": encoder.n_streamlines,
-        "points": encoder.n_points,
-        "fiblets": encoder.n_fiblets,
-        "bytes": size,
-        "bytes_per_point": size / max(encoder.n_points, 1),
+        **_written(FibletSet.open(target), target),
         **error.summary(),
         "compared_every": every,
-        "promise_mm": header_set.promise,
         "seconds": seconds,
         "points_per_second": encoder.n_points / seconds,
         "seconds_to_measure": time.perf_counter() - started - seconds,
-        "dropped": whole.dropped,
-        "per_point": list(whole.per_point),
-        "exact": False,
     }
 
 
@@ -251,6 +225,42 @@ def _written(fiblets: FibletSet, target: str | PathLike[str]) -> dict[str, Any]:
         "per_point": list(fiblets.per_point),
         "exact": fiblets.exact is not None,
     }
+
+
+class _Source:
+    """A tractogram file, whose streamlines are resampled where a step is asked for."""
+
+    def __init__(
+        self, path: str | PathLike[str], step: float | Literal["auto"], max_error: float | None, progress: Progress
+    ) -> None:
+        self._path, self._step, self._max_error = path, None if step == "auto" else step, max_error
+        self.promise: float | None = None  # of resampled streamlines, known before their corners are cut
+        if self._step is not None:
+            from ..encoding.resample import resample
+
+            coarse = Survey()
+            for chunk in shown(self.originals(), None, "surveying", progress):
+                coarse.add(resample(chunk, self._step))
+            self.promise = Parameters.choose(coarse, max_error).promise
+
+    def originals(self) -> Iterator[Streamlines]:
+        """Yield the streamlines as the file has them."""
+        return formats.iter_chunks(self._path, CHUNK_POINTS)
+
+    def chunks(self) -> Iterator[Streamlines]:
+        """Yield the streamlines to code."""
+        if self._step is None or self.promise is None:
+            return self.originals()
+        from ..encoding.resample import resample
+
+        step, cut = self._step, CUT_SHARE * self.promise
+        return (resample(chunk, step, cut) for chunk in self.originals())
+
+    def parameters(self, found: Survey) -> Parameters:
+        """Return how to code them."""
+        if self._step is None or self.promise is None:
+            return Parameters.choose(found, self._max_error)
+        return Parameters.of_resampled(found, self.promise, self._step)
 
 
 @dataclass

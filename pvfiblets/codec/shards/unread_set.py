@@ -48,23 +48,9 @@ class UnreadSet(FibletSet):
 
     @classmethod
     def open_shards(cls, place: str | PathLike[str]) -> FibletSet:
-        """Open a folder of shards, or the address of one.
-
-        Parameters
-        ----------
-        place : str or PathLike
-
-        Returns
-        -------
-        FibletSet
-            One of these. Shards that keep every bit are put together in memory: they are coded anew for drawing,
-            and not in the same way for each alone as for all.
-
-        Raises
-        ------
-        FormatError, OSError, ImportError
-            As :meth:`.ShardedSet.open`.
-        """
+        """Open a folder of shards, or the address of one."""
+        # Shards that keep every bit are put together in memory: they are coded anew for drawing, and not in the same
+        # way for each alone as for all.
         shards = ShardedSet.open(place)
         found = cls(shards)
         return shards.gather() if found._first.exact is not None else found
@@ -251,13 +237,7 @@ class UnreadSet(FibletSet):
 
     @cached_property
     def gathered(self) -> FibletSet:
-        """The set in memory.
-
-        Raises
-        ------
-        MemoryError
-            If there is too little memory for it.
-        """
+        """The set in memory."""
         free = free_host_memory()
         if free is not None and self.nbytes > free:
             raise MemoryError(

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from numbers import Real
+
+from pvfiblets.support.real_numbers import is_number
 
 OPERATORS = ("none", "reinhard", "exponential", "aces", "hable")
 """Operators of tone mapping; the formulas are in the shader."""
@@ -59,8 +59,3 @@ class Tone:
         given = {name: float(getattr(self, name)) for name in names}
         # Beyond, float32 knows infinity only, and infinity over infinity is black.
         return given | {"exposure": min(self.exposure, 1e30), "white": min(white, _BRIGHTEST), "brightest": _BRIGHTEST}
-
-
-def is_number(value: object) -> bool:
-    """Return whether a value is a finite number, of NumPy's or of Python's, and no bool."""
-    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)

@@ -31,16 +31,7 @@ class FibletDrawable(Drawable[FibletStyle]):
 
     @abstractmethod
     def sampled(self, view: View, style: FibletStyle, rectangle: Rectangle) -> Iterable[SampledLines]:
-        """Return what :meth:`sample_layers` draws of this set, part by part.
-
-        Parameters
-        ----------
-        view : View
-        style : FibletStyle
-            Of which, with the view, :meth:`layers_samples` is true.
-        rectangle : tuple of 4 ints
-            x, y, width, height of the part of the picture outside of which the set draws nothing.
-        """
+        """Return what :meth:`sample_layers` draws of this set, part by part; nothing lies outside of the rectangle."""
 
     def sample_layers(self) -> SampleLayers:
         """Return what draws sixteen samples of every pixel, of this set and of others of the same picture and context.

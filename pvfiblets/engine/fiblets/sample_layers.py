@@ -56,70 +56,39 @@ Rectangle = tuple[int, int, int, int]
 
 @dataclass(frozen=True)
 class SampledLines:
-    """Lines of a set, or of a part of it, as a picture shows them.
-
-    Attributes
-    ----------
-    view : View
-    style : FibletStyle
-    rectangle : tuple of 4 ints
-        x, y, width, height of the part of the picture in which any of them can be.
-    draw : callable
-        Draws the samples of a part of the picture, whose view, style and G-buffer it is given, and yields where it
-        waits. The fourth argument says whether nearer samples in the G-buffer stay; otherwise it begins with none.
-        Then the owner is `EMPTY` where these lines do not show.
-    """
+    """Lines of a set, or of a part of it, as a picture shows them."""
 
     view: View
     style: FibletStyle
-    rectangle: Rectangle
+    rectangle: Rectangle  # x, y, width, height of the part of the picture in which any of them can be
+    # Draws the samples of a part of the picture, whose view, style and G-buffer it is given, and yields where it waits.
+    # The fourth argument says whether nearer samples in the G-buffer stay; otherwise it begins with none. Then the
+    # owner is `EMPTY` where these lines do not show.
     draw: Callable[[View, FibletStyle, GBuffer, bool], Iterator[None]]
 
 
 @dataclass(frozen=True)
 class OtherSamples:
-    """Samples of all in a scene but the lines: 4 x 4 pictures side by side, each of one sample of every pixel.
-
-    Attributes
-    ----------
-    colours : moderngl.Texture
-    depths : moderngl.Texture
-        Window depths, float32.
-    """
+    """Samples of all in a scene but the lines: 4 x 4 pictures side by side, each of one sample of every pixel."""
 
     colours: moderngl.Texture
-    depths: moderngl.Texture
+    depths: moderngl.Texture  # window depths, float32
 
 
 @dataclass(frozen=True)
 class Layer:
-    """A line of each pixel.
+    """A line of each pixel."""
 
-    Attributes
-    ----------
-    shares : moderngl.Texture
-        Of each pixel, in parts of `WHOLE`, in 17 bits; 0 where the layer has none.
-    of : callable
-        Returns the picture of what it shows of a set, by number. It holds until that of another set is asked for.
-    others : moderngl.Texture, optional
-        What `OtherSamples` add to each pixel where no line shows. Without, samples that show no line have a share of
-        the first layer.
-    """
-
-    shares: moderngl.Texture
+    shares: moderngl.Texture  # of each pixel, in parts of `WHOLE`, in 17 bits; 0 where the layer has none
+    # Returns the picture of what it shows of a set, by number. It holds until that of another set is asked for.
     of: Callable[[int], GBuffer]
+    # What `OtherSamples` add to each pixel where no line shows. Without, samples that show no line have a share of the
+    # first layer.
     others: moderngl.Texture | None = None
 
 
 class SampleLayers:
-    """The layers of one picture, drawn once.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    """
+    """The layers of one picture, drawn once."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx
@@ -135,20 +104,8 @@ class SampleLayers:
     def draw(
         self, sets: Sequence[Sequence[SampledLines]], others: OtherSamples | None = None
     ) -> Iterator[float | Layer]:
-        """Draw once, part by part; yield the share of the work that is done after each, at last the layers.
-
-        Parameters
-        ----------
-        sets : sequence of sequence of SampledLines
-            The parts of each set. Of two lines at one depth the one of the later set or part shows.
-        others : OtherSamples, optional
-            Everything else in the same picture.
-
-        Raises
-        ------
-        EngineError
-            If memory does not suffice, or there are more than `MOST_SETS` sets.
-        """
+        """Draw once, part by part; yield the share of the work that is done after each, at last the layers."""
+        # Of two lines at one depth the one of the later set or part shows.
         self._sets = len(sets)
         if len(sets) > MOST_SETS:
             raise EngineError(f"{len(sets)} sets are more than samples at once can tell apart; hide some")

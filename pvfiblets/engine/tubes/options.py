@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from numbers import Real
-from typing import Any
+
+from pvfiblets.support.real_numbers import is_number
 
 from ..view import Style, check_at_least
 
@@ -76,11 +75,7 @@ def check_choices(
             raise ValueError(f"{name} is {value!r}; use one of {[AUTO, *known]}")
     if culling not in (None, "two-phase"):
         raise ValueError(f"culling is {culling!r}; use 'two-phase' or None")
-    if iterations is not None and not (_is_number(iterations) and iterations % 1 == 0 and iterations >= 1):
+    if iterations is not None and not (is_number(iterations) and iterations % 1 == 0 and iterations >= 1):
         raise ValueError(f"iterations is {iterations!r}; give a whole number above 0, or None for the solver's own")
-    if not (_is_number(min_width) and 0.0 <= min_width <= 64.0):
+    if not (is_number(min_width) and 0.0 <= min_width <= 64.0):
         raise ValueError(f"min_width is {min_width!r}; give pixels from 0 (as thin as they are) to 64")
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)

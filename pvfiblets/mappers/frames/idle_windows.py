@@ -68,11 +68,6 @@ class Finishing:
 
     VTK ends the program where a `KeyboardInterrupt` leaves what it calls: the first Ctrl-C only keeps `reach` from
     being true any more, a second one interrupts as usual.
-
-    Parameters
-    ----------
-    total : int
-        Samples to come.
     """
 
     def __init__(self, total: int) -> None:

@@ -8,13 +8,11 @@ copied, read or drawn again. Before each frame of the window, the state of each 
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Callable, Hashable, Iterable
 from typing import TYPE_CHECKING, Any
 
-from vtkmodules.vtkCommonCore import vtkCommand
-
 from pvfiblets.mappers.frames.idle_windows import shown_pictures
+from pvfiblets.mappers.frames.observers import observe, weakly
 from pvfiblets.mappers.frames.scene import in_motion, items_of, keep_views, weak
 from pvfiblets.mappers.frames.scene_state import scene_state
 
@@ -39,24 +37,14 @@ class KeptViews:
         self.frames = {one.GetAddressAsString(""): 0 for one in self._renderers}
         self._window: Any = weak(window)
         keep_views.add(window.GetAddressAsString(""))
-        reference = weakref.ref(self)
-
-        def call(_caller: Any, event: str) -> None:
-            kept = reference()
-            if kept is not None:
-                (kept._start if event == "StartEvent" else kept._end)()  # noqa: SLF001 - its own
-
-        self._tags = [window.AddObserver(event, call) for event in (vtkCommand.StartEvent, vtkCommand.EndEvent)]
+        self._ignore = observe(window, ("StartEvent", "EndEvent"), weakly(self._follow_frame, passing=True))
 
     def stop(self) -> None:
         """Draw all views in every frame again; twice is harmless."""
         window = self._window.Get()
         if window is not None:
             keep_views.discard(window.GetAddressAsString(""))
-        while self._tags:
-            tag = self._tags.pop()
-            if window is not None:
-                window.RemoveObserver(tag)
+        self._ignore()
         self._put_back()
         self._shown.clear()
 
@@ -73,6 +61,12 @@ class KeptViews:
     def postpone(self, renderer: vtkRenderer) -> None:
         """Keep a view's picture in the next frame, though it has changed."""
         self._postponed = renderer
+
+    def _follow_frame(self, _window: Any, event: str) -> None:
+        if event == "StartEvent":
+            self._start()
+        else:
+            self._end()
 
     def _start(self) -> None:
         window, postponed, self._postponed = self._window.Get(), self._postponed, None

@@ -23,31 +23,19 @@ __all__ = ["EdgeSmoothing"]
 
 
 class EdgeSmoothing:
-    """What is smoothed in one renderer's picture, while this exists and `release` has not been called.
-
-    Parameters
-    ----------
-    renderer : vtkRenderer
-
-    Attributes
-    ----------
-    sample : bool
-        Whether the picture is one of many whose mean is shown (`antialias_refinement.py`). Lines take those pixels
-        whose middles they cover: none is widened to a pixel, and OpenGL's rule for thin lines, which makes slanted
-        ones thinner, does not count.
-    smooths : bool
-        Whether edges are smoothed: of no sample, nor where the mean of all is shown instead.
-    layer : callable or None
-        Returns what a mapper shows in the frame instead of its picture: its part of a layer of samples.
-    widened : bool
-        Whether any is drawn otherwise in the picture of one sample: mappers say so.
-    """
+    """What is smoothed in one renderer's picture, while this exists and `release` has not been called."""
 
     def __init__(self, renderer: vtkRenderer) -> None:
         self._renderer = weak(renderer)
         self._address: str = renderer.GetAddressAsString("")
         self._noted: dict[str, SmoothedLines] = {}
-        self.sample = self.smooths = self.widened = False
+        # Whether the picture is one of many whose mean is shown (`antialias_refinement.py`). Lines take those pixels
+        # whose middles they cover: none is widened to a pixel, and OpenGL's rule for thin lines, which makes slanted
+        # ones thinner, does not count.
+        self.sample = False
+        self.smooths = False  # whether edges are smoothed: of no sample, nor where the mean of all is shown instead
+        self.widened = False  # whether any is drawn otherwise in the picture of one sample: mappers say so
+        # Returns what a mapper shows in the frame instead of its picture: its part of a layer of samples.
         self.layer: Callable[[Any], Any] | None = None
         smoothers[self._address] = self
 

@@ -58,33 +58,16 @@ class _Frame(Enum):
 
 
 class Refinement:
-    """The samples of one renderer's picture.
-
-    Parameters
-    ----------
-    samples : int
-        How many of a pixel.
-    seconds : float, optional
-        How long they may be drawn for; there are fewer if that is over.
-
-    Attributes
-    ----------
-    due : bool
-        Whether the next frame is to be the first sample, if nothing has changed.
-    state : hashable
-        What the picture that was drawn last is made of; None if that changes from frame to frame.
-    seen : callable
-        Says whether somebody looks at each frame, not at the last only.
-    """
+    """The samples of one renderer's picture."""
 
     def __init__(self, samples: int, seconds: float | None = None) -> None:
-        self.samples = samples
-        self.seconds = seconds
-        self.due = False
-        self.seen: Callable[[], bool] = lambda: False
+        self.samples = samples  # of a pixel
+        self.seconds = seconds  # how long they may be drawn for; there are fewer if that is over
+        self.due = False  # whether the next frame is to be the first sample, if nothing has changed
+        self.seen: Callable[[], bool] = lambda: False  # whether somebody looks at each frame, not at the last only
         self._frame = _Frame.PLAIN
         self._name = _WHOLE
-        self.state: Hashable = None
+        self.state: Hashable = None  # of the picture drawn last; None if it changes from frame to frame
         self._left: list[tuple[float, float]] = []
         self._taken = 0
         self._spent = self._begun = 0.0

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from pvfiblets.engine.effects.depth_of_field import WIDEST, Focus, distance_of
 from pvfiblets.engine.effects.picture import PictureEffects
 from pvfiblets.engine.effects.projection import Projection
-from pvfiblets.engine.effects.tone import is_number
 from pvfiblets.mappers.frames.scene import in_motion, pixel_scale, samples_per_pixel, to_array
+from pvfiblets.support.real_numbers import is_number
 
 if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkRenderer

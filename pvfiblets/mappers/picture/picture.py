@@ -19,7 +19,6 @@ While nothing is changed, none of this exists.
 from __future__ import annotations
 
 import time
-import weakref
 from collections.abc import Callable, Generator, Hashable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
@@ -32,6 +31,7 @@ from pvfiblets.engine.effects.sample_positions import sample_squares
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.mappers.frames.idle_windows import finish, shown_pictures
+from pvfiblets.mappers.frames.observers import observe, weakly
 from pvfiblets.mappers.frames.scene import in_motion, items_of, lenses, partly_shown, streamed, weak
 from pvfiblets.mappers.frames.scene_state import scene_state
 from pvfiblets.mappers.frames.shifted_cameras import shifted
@@ -97,7 +97,7 @@ class Picture:
         self._tone = Tone()
         self._depth_of_field: DepthOfField | None = None
         self._prop: PictureProp | None = None
-        self._observers: list[int] = []
+        self._ignore: Callable[[], None] = lambda: None
         self._overlay = Overlay()
         self._smoothing: Any = None
         self._margin: Margin | None = None
@@ -305,21 +305,17 @@ class Picture:
         if self.on and self._prop is None:
             self._prop = PictureProp()
             self._prop.hang(self)
-            reference = weakref.ref(self)
-
-            def call(_caller: Any, event: str) -> None:
-                picture = reference()
-                if picture is not None:
-                    steps = picture.start, picture.end, picture.captured
-                    picture.stored(steps[_EVENTS.index(event)])
-
-            self._observers = [renderer.AddObserver(event, call) for event in _EVENTS]
+            self._ignore = observe(renderer, _EVENTS, weakly(self._follow_frame, passing=True))
             self._prop.AddConsumer(renderer)
         elif not self.on:
             self.release()
         if self._refinement is not None:
             self._refinement.forget()
         renderer.Modified()
+
+    def _follow_frame(self, _renderer: Any, event: str) -> None:
+        steps = self.start, self.end, self.captured
+        self.stored(steps[_EVENTS.index(event)])
 
     def _insert(self) -> None:
         """Put the prop before all others of the renderer, while it draws: users' lists of actors lack it."""
@@ -342,8 +338,7 @@ class Picture:
             return
         renderer = self.renderer
         if renderer is not None:
-            for observer in self._observers:
-                renderer.RemoveObserver(observer)
+            self._ignore()
             prop.RemoveConsumer(renderer)
             renderer.GetViewProps().RemoveItem(prop)
         for context in contexts_with(prop):

@@ -12,10 +12,10 @@ import warnings
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
-from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
 from pvfiblets.mappers.effects import resolve
+from pvfiblets.mappers.frames.observers import observe
 from pvfiblets.mappers.frames.scene import actors_in, items_of, weak
 
 if TYPE_CHECKING:
@@ -47,7 +47,8 @@ class ActorLink:
         self._actor = weak(None)
         self._property = weak(None)
         self._shader_property = weak(None)
-        self._tags = (0, 0)
+        self._ignore_actor: Callable[[], None] = lambda: None
+        self._ignore_property: Callable[[], None] = lambda: None
         self.installed = ()
         self.found = False
         self._alone = ("", 0)
@@ -65,19 +66,17 @@ class ActorLink:
         self._before_attach()
         self._actor = weak(actor)
         actor.SetMapper(cast("Any", self._mapper.Get()))
-        self._tags = actor.AddObserver(vtkCommand.ModifiedEvent, self._actor_changed), 0
+        self._ignore_actor = observe(actor, ("ModifiedEvent",), self._actor_changed)
         self._watch_property(actor)
         self.install()
 
     def detach(self) -> None:
         """Take the shader pieces out of the actor; it then needs another mapper."""
-        actor, shaders = self.actor, self._shader_property.Get()
-        if actor is not None:
-            actor.RemoveObserver(self._tags[0])
+        self._ignore_actor()
+        shaders = self._shader_property.Get()
         if shaders is not None:
             resolve.uninstall(shaders, self.installed)
-        if self._property.Get() is not None:
-            self._property.Get().RemoveObserver(self._tags[1])
+        self._ignore_property()
         self._forget()
 
     def find(self) -> None:
@@ -148,11 +147,10 @@ class ActorLink:
             )
 
     def _watch_property(self, actor: vtkActor) -> None:
-        if self._property.Get() is not None:
-            self._property.Get().RemoveObserver(self._tags[1])
+        self._ignore_property()
         _keep_surface(actor.GetProperty(), "")
         self._property = weak(actor.GetProperty())
-        self._tags = self._tags[0], actor.GetProperty().AddObserver(vtkCommand.ModifiedEvent, _keep_surface)
+        self._ignore_property = observe(actor.GetProperty(), ("ModifiedEvent",), _keep_surface)
 
     def modified(self) -> None:
         """Notify observers that render on demand; the mapper's own time would make VTK rebuild its shaders."""

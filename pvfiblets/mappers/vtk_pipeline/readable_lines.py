@@ -9,7 +9,6 @@ with the colours that the picture has. `readable` does so for all mappers of a w
 from __future__ import annotations
 
 import warnings
-import weakref
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any, cast
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Any, cast
 from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
+from pvfiblets.mappers.frames.observers import observe, weakly
 from pvfiblets.mappers.frames.scene import actors_in, items_of, to_array, weak, world_planes
 from pvfiblets.mappers.frames.windows import contexts_with
 
@@ -109,18 +109,12 @@ class LineReading:
         known = self._watched.get(address)
         if known is None or known.Get() is None:
             self._watched[address] = weak(renderer)
-            this = weakref.WeakMethod(self._follow_selection)  # or the renderer would keep the data of a mapper gone
+            # Or the renderer would keep the data of a mapper gone.
+            observe(renderer, ("StartEvent",), weakly(self._follow_selection, passing=True))
 
-            def started(begun: vtkRenderer, _event: str) -> None:
-                follow = this()
-                if follow is not None:
-                    follow(begun.GetSelector())
-
-            renderer.AddObserver(vtkCommand.StartEvent, started)
-
-    def _follow_selection(self, selector: vtkHardwareSelector) -> None:
+    def _follow_selection(self, renderer: vtkRenderer, _event: str) -> None:
         """Be real lines while VTK selects cells or points, and be drawn by the engine in every other picture."""
-        mapper = self.mapper
+        mapper, selector = self.mapper, renderer.GetSelector()
         if self.purpose == "export":
             return
         if selector is None or selector.GetActorPassOnly() or selector.GetFieldAssociation() > _CELLS:

@@ -28,23 +28,10 @@ EXPORTERS = {
 
 
 def follow(picker: vtkPicker) -> Any:
-    """Make a picker find this package's actors: ``vtkPicker``, ``vtkPointPicker``, ``vtkCellPicker`` or their like.
+    """Make a ``vtkPicker`` or its like find this package's actors, and return it.
 
-    Those that are made after the first actor of this package do so by themselves.
-
-    Parameters
-    ----------
-    picker : vtkPicker
-
-    Returns
-    -------
-    vtkPicker
-        The same.
-
-    Notes
-    -----
-    Its ``GetDataSet()`` is PolyData of the lines that are shown, whose cell data ``'streamline'`` says which streamline
-    ``GetCellId()`` is.
+    Those that are made after the first actor of this package do so by themselves. Its ``GetDataSet()`` is PolyData of
+    the lines that are shown, whose cell data ``'streamline'`` says which streamline ``GetCellId()`` is.
     """
     picker.AddObserver(vtkCommand.StartPickEvent, _begin)
     picker.AddObserver(vtkCommand.EndPickEvent, _end)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import pyvista as pv
 
-from pvfiblets.plotting.actors.linked_property import LinkedProperty, is_own_write, own_writes
+from pvfiblets.mappers.frames.observers import observe, weakly
+from pvfiblets.plotting.actors.linked_property import is_own_write, own_writes
 from pvfiblets.plotting.actors.shading import Shades
 from pvfiblets.plotting.colours.colours import ColourSettings, make_colouring, update_table
 from pvfiblets.plotting.colours.linked_table import LinkedTable
@@ -54,7 +55,7 @@ class ColouredActor(Settings, pv.Actor):
         self._scalars: Scalars | None = None
         self._table = pv.LookupTable()
         self._linked_table = LinkedTable(self._table, self._table_touched)
-        self._linked_property = LinkedProperty()
+        self._ignore_property: Callable[[], None] = lambda: None
         self._opacity_by: Any = None
         self._opacities = Opacities()
         self._shades = Shades(mapper)
@@ -320,7 +321,8 @@ class ColouredActor(Settings, pv.Actor):
     def SetProperty(self, prop: Any) -> None:  # noqa: N802 - VTK's name
         """Replace the property, and apply its values."""
         super().SetProperty(prop)
-        self._linked_property.watch(prop, self._take_property)
+        self._ignore_property()
+        self._ignore_property = observe(prop, ("ModifiedEvent",), weakly(self._take_property))
         self._take_property()
 
     def _take_property(self) -> None:

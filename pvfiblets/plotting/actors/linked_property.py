@@ -6,10 +6,8 @@ package's own to draw: an actor watches its property, and takes over what change
 
 from __future__ import annotations
 
-import weakref
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
 
 _writing = 0
 
@@ -28,28 +26,3 @@ def own_writes() -> Iterator[None]:
 def is_own_write() -> bool:
     """Return whether this package is making the current change."""
     return _writing > 0
-
-
-def observe(watched: Any, method: Callable[[], None]) -> int:
-    """Call a method whenever a VTK object is modified, and return the observer's tag; keeps no method alive."""
-    this = weakref.WeakMethod(method)
-
-    def modified(_watched: Any, _event: str) -> None:
-        call = this()
-        if call is not None:
-            call()
-
-    return int(watched.AddObserver("ModifiedEvent", modified))
-
-
-class LinkedProperty:
-    """The property that an actor watches, and may share with others."""
-
-    _watched: Any = None
-    _tag = 0
-
-    def watch(self, prop: Any, modified: Callable[[], None]) -> None:
-        """Call a method whenever a property is modified, and no longer when the one before is."""
-        if self._watched is not None:
-            self._watched.RemoveObserver(self._tag)
-        self._watched, self._tag = prop, observe(prop, modified)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import warnings
 import weakref
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import import_module
@@ -117,7 +118,7 @@ class _Bar:
     changing: bool = False
 
 
-class ActorRegistry(Generic[A]):
+class ActorRegistry(ABC, Generic[A]):
     """Base of the components that add actors: makes and keeps actors of one kind.
 
     A subclass says what can be set, in `_SETTINGS`, and makes actors, in ``_make``. Arguments and doc of its ``add``
@@ -168,9 +169,9 @@ class ActorRegistry(Generic[A]):
             self._sources[actor.memory_address] = SourceChanges(source, actor)
         return actor
 
+    @abstractmethod
     def _make(self, *source: Any, **own: Any) -> A:
         """Add an actor; same arguments and doc as ``add``."""
-        raise NotImplementedError
 
     def _check_known(self, own: dict[str, Any]) -> None:
         """Raise a TypeError for unknown arguments, in the name of the called function."""

@@ -6,7 +6,6 @@ on: pictures and scalar bars show it, and other scalars keep it.
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +13,8 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.actors.linked_property import is_own_write, observe
+from pvfiblets.mappers.frames.observers import observe, weakly
+from pvfiblets.plotting.actors.linked_property import is_own_write
 
 
 @dataclass(frozen=True)
@@ -49,14 +49,13 @@ class LinkedTable:
     def __init__(self, table: pv.LookupTable, modified: Callable[[], None]) -> None:
         self._table = table
         self._written: _Written | None = None
-        self._modified = weakref.WeakMethod(modified)
-        observe(table, self._changed)
+        self._modified = weakly(modified)
+        observe(table, ("ModifiedEvent",), weakly(self._changed))
 
     def _changed(self) -> None:
-        modified = self._modified()
-        if modified is not None and not is_own_write() and self._written is not None:
+        if not is_own_write() and self._written is not None:
             self.touched = True
-            modified()
+            self._modified()
 
     def note(self) -> None:
         """Remember what the settings have made of the table."""

@@ -9,17 +9,14 @@ from the style.
 from __future__ import annotations
 
 import math
-import weakref
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pyvista as pv
 
+from pvfiblets.mappers.frames.observers import observe, weakly
 from pvfiblets.plotting.fiblets.pick_overlay import Outline
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkRenderingCore import vtkRenderWindowInteractor
 
 PRIORITY = 0.25  # widgets have 0.5, styles 0
 STILL = 3.0  # pixels: a mouse that moved less between press and release has clicked
@@ -52,8 +49,8 @@ class Pointing:
         self._found = found
         self._hovered = hovered
         self._color = color
-        self._tags: dict[str, int] = {}
-        self._style: tuple[Any, int] | None = None
+        self._ends: dict[str, Callable[[], None]] = {}
+        self._forget_style: Callable[[], None] = lambda: None
         self._pressed: tuple[int, int] | None = None
         self._corners: list[tuple[int, int]] = []
         self._outline: Outline | None = None
@@ -67,26 +64,18 @@ class Pointing:
             self._listen("LeftButtonReleaseEvent", self._release_area)
             self._listen("MouseMoveEvent", self._move_area)
             self._listen("CharEvent", self._key)
-        if hovered is not None and "MouseMoveEvent" not in self._tags:
+        if hovered is not None and "MouseMoveEvent" not in self._ends:
             self._listen("MouseMoveEvent", self._move_area)
 
     def _listen(self, event: str, handler: Callable[[], bool]) -> None:
         """Call a handler; if it returns True, the event goes no further."""
-        reference = weakref.WeakMethod(handler)
-
-        def call(interactor: vtkRenderWindowInteractor, name: str) -> None:
-            alive = reference()
-            if alive is not None and alive():
-                interactor.GetCommand(self_tags[name]).SetAbortFlag(1)
-
-        self_tags = self._tags
-        self._tags[event] = self._interactor.AddObserver(event, call, PRIORITY)
+        self._ends[event] = observe(self._interactor, (event,), weakly(handler), PRIORITY)
 
     def stop(self) -> None:
         """Take all observers back; twice is harmless."""
-        for tag in self._tags.values():
-            self._interactor.RemoveObserver(tag)
-        self._tags.clear()
+        for end in self._ends.values():
+            end()
+        self._ends.clear()
         self._forget_style()
         self._end_outline()
 
@@ -108,14 +97,7 @@ class Pointing:
         self._forget_style()
         style = self._interactor.GetInteractorStyle()
         if style is not None:
-            reference = weakref.WeakMethod(self._release_click)
-
-            def ended(*_: Any) -> None:
-                alive = reference()
-                if alive is not None:
-                    alive()
-
-            self._style = style, style.AddObserver("EndInteractionEvent", ended)
+            self._forget_style = observe(style, ("EndInteractionEvent",), weakly(self._release_click))
         return False
 
     def _release_click(self) -> bool:
@@ -124,12 +106,6 @@ class Pointing:
         if pressed is not None and math.dist(pressed, self.pixel) <= STILL:
             self._tell(np.array([self.pixel], np.float64), click=True)
         return False
-
-    def _forget_style(self) -> None:
-        if self._style is not None:
-            style, tag = self._style
-            style.RemoveObserver(tag)
-            self._style = None
 
     def _tell(self, corners: np.ndarray, *, click: bool) -> None:
         pv.try_callback(self._found, corners, click, self._selecting())

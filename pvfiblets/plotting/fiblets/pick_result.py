@@ -11,12 +11,12 @@ from vtkmodules.vtkCommonMath import vtkMatrix4x4
 
 from pvfiblets.mappers.frames.scene import to_array
 from pvfiblets.mappers.picking import Layer, pick_area, shown_by
+from pvfiblets.plotting.fiblets.scalars import point_values
 
 if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkRenderer
 
-    from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.plotting.fiblets.actor import FibletActor
+    from pvfiblets.plotting.fiblets.selection import SelectableActor
 
 _AT_ONCE = 4096  # streamlines that are decompressed together
 
@@ -47,7 +47,7 @@ class Picked:
     actor showed when it was picked.
     """
 
-    actor: FibletActor
+    actor: SelectableActor
     ids: np.ndarray
     places: np.ndarray
     depths: np.ndarray
@@ -111,29 +111,8 @@ def _between(offsets: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.nd
     return offsets[:-1] + before, offsets[:-1] + np.minimum(before + 1, last), share
 
 
-def point_values(fiblets: FibletSet, ids: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return one number per point of some streamlines, one after another, and their offsets."""
-    if name in fiblets.per_point:
-        lines = fiblets.decompress(ids)
-        return np.asarray(lines.per_point[name], np.float64).reshape(len(lines.points), -1)[:, 0], lines.offsets
-    from pvfiblets.codec.streamline_ranges import StreamlineRanges
-    from pvfiblets.query.measures.measures import measure
-
-    part = fiblets.extract(ids)
-    try:
-        measured = measure(part, name)
-    except KeyError:
-        return None
-    if measured.kind != "point":
-        return None
-    where = StreamlineRanges.from_fiblets(part)
-    offsets = np.concatenate([[0], np.cumsum(where.points)])
-    rows = np.arange(offsets[-1]) + np.repeat(where.point - offsets[:-1], where.points)
-    return np.asarray(measured.array(), np.float64)[rows], offsets
-
-
 def visible(
-    actor: FibletActor,
+    actor: SelectableActor,
     polygon: Any,
     *,
     tolerance: float = 0.0,
@@ -157,7 +136,7 @@ def visible(
 
 
 def everything(
-    actor: FibletActor, polygon: Any, *, tolerance: float = 0.0, renderer: vtkRenderer | None = None
+    actor: SelectableActor, polygon: Any, *, tolerance: float = 0.0, renderer: vtkRenderer | None = None
 ) -> Picked | None:
     """Return all of an actor under an area of the window, hidden or not; ``None`` if it is empty."""
     # Arguments are as for `visible`. Lines left out by the actor's filters and cuts are not included. Visible lines of
@@ -207,7 +186,7 @@ def everything(
     return Picked(actor, ids, places, depths, 0.0, through=True, _data=data)
 
 
-def _context(actor: FibletActor) -> dict[str, Any]:
+def _context(actor: SelectableActor) -> dict[str, Any]:
     """Return what the actor shows now."""
     model = vtkMatrix4x4()
     actor.GetModelToWorldMatrix(model)
@@ -225,4 +204,4 @@ def checked_box(box: Any) -> np.ndarray:
     return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
 
 
-__all__ = ["Layer", "Picked", "checked_box", "everything", "point_values", "visible"]
+__all__ = ["Layer", "Picked", "checked_box", "everything", "visible"]

@@ -189,3 +189,23 @@ def warn_if_apart(fiblets: FibletSet | Streamlines, image: Image, effect: str, *
 def _extent(bounds: Any) -> str:
     pairs = zip("xyz", bounds[::2], bounds[1::2], strict=True)
     return ", ".join(f"{axis} {low:.4g} to {high:.4g}" for axis, low, high in pairs)
+
+
+def point_values(fiblets: FibletSet, ids: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return one number per point of some streamlines, one after another, and their offsets."""
+    if name in fiblets.per_point:
+        lines = fiblets.decompress(ids)
+        return np.asarray(lines.per_point[name], np.float64).reshape(len(lines.points), -1)[:, 0], lines.offsets
+    from pvfiblets.codec.streamline_ranges import StreamlineRanges
+
+    part = fiblets.extract(ids)
+    try:
+        measured = measure(part, name)
+    except KeyError:
+        return None
+    if measured.kind != "point":
+        return None
+    where = StreamlineRanges.from_fiblets(part)
+    offsets = np.concatenate([[0], np.cumsum(where.points)])
+    rows = np.arange(offsets[-1]) + np.repeat(where.point - offsets[:-1], where.points)
+    return np.asarray(measured.array(), np.float64)[rows], offsets

@@ -10,17 +10,18 @@ of compressed fiblets (`FibletSet.extract`).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor
 
 from pvfiblets.mappers import Colouring, FibletMapper, TubeMapper
 from pvfiblets.mappers.effects.line_tubes import Tubes
 from pvfiblets.mappers.effects.shading import Silhouette
+from pvfiblets.mappers.frames.observers import observe, weakly
 from pvfiblets.mappers.frames.scene import partly_shown, renderers_of, to_array, weak
 from pvfiblets.mappers.picking import Layer
 from pvfiblets.streamlines import Streamlines
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.mappers.effects.shader_effects import Draw
-    from pvfiblets.plotting.fiblets.selection import SelectableActor
+    from pvfiblets.plotting.fiblets.filtering import BundledActor
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
 
@@ -67,7 +68,7 @@ class SelectionOverlay:
 
     def __init__(
         self,
-        owner: SelectableActor,  # whose streamlines they are
+        owner: BundledActor,  # whose streamlines they are
         ids: np.ndarray,  # `(n,)` int64, rising
         *,
         color: tuple[float, ...] | None,  # one colour for all; the owner's colours by default
@@ -83,7 +84,7 @@ class SelectionOverlay:
         self._few = radius is not None and int(np.diff(owner.fiblets.offsets())[ids].sum()) <= MOST_POINTS
         self._taken: dict[str, Any] = {}
         self._matrix = vtkMatrix4x4()
-        self._renderers: dict[str, tuple[Any, int]] = {}
+        self._renderers: dict[str, tuple[Any, Callable[[], None]]] = {}
         self._plan: _Splines | None = None
         self._plan = self._plan_for(owner.mapper)
         self.mapper: Any = self._make(self._plan)
@@ -108,9 +109,8 @@ class SelectionOverlay:
         if address in self._renderers:
             return
         renderer.AddActor(self.actor)
-        this = weak_method(self)
-        tag = renderer.AddObserver(vtkCommand.StartEvent, lambda caller, _event: this(caller))
-        self._renderers[address] = (weak(renderer), tag)
+        end = observe(renderer, ("StartEvent",), weakly(self.before_picture, passing=True))
+        self._renderers[address] = (weak(renderer), end)
 
     def leave(self) -> None:
         """Be gone from all renderers, and from the GPU."""
@@ -120,10 +120,10 @@ class SelectionOverlay:
         self.mapper.detach()
 
     def _leave(self, address: str) -> None:
-        reference, tag = self._renderers.pop(address)
+        reference, end = self._renderers.pop(address)
+        end()
         renderer = reference.Get()
         if renderer is not None:
-            renderer.RemoveObserver(tag)
             renderer.RemoveActor(self.actor)
 
     def leave_with_owner(self) -> None:
@@ -134,7 +134,7 @@ class SelectionOverlay:
             if renderer is None or owner is None or not renderer.HasViewProp(owner):
                 self._leave(address)
 
-    def before_picture(self, renderer: vtkRenderer) -> None:
+    def before_picture(self, renderer: vtkRenderer, _event: str = "") -> None:
         """Remove itself if the owner is gone, otherwise copy its state, before VTK lists its actors."""
         if partly_shown:
             return
@@ -244,23 +244,9 @@ class SelectionOverlay:
         return colouring
 
 
-def weak_method(standout: SelectionOverlay) -> Any:
-    """Return a function that calls ``before_picture`` while the object lives."""
-    import weakref
-
-    reference = weakref.ref(standout)
-
-    def call(renderer: vtkRenderer) -> None:
-        alive = reference()
-        if alive is not None:
-            alive.before_picture(renderer)
-
-    return call
-
-
 def spline_tubes_of(fiblets: FibletSet, ids: np.ndarray, radius: float, values: str | None = None) -> SplineTubes:
     """Return streamlines as spline tubes of one radius."""
-    from pvfiblets.plotting.fiblets.pick_result import point_values
+    from pvfiblets.plotting.fiblets.scalars import point_values
     from pvfiblets.tubes.build import as_spline_tubes
 
     lines = fiblets.decompress(ids, dtype=np.float64)

@@ -25,7 +25,7 @@ from pvfiblets.mappers.tubes import TubeMapper
 from pvfiblets.page.scene import CameraPlace, Light, PageScene, encoded, fiblet_layer
 from pvfiblets.plotting.page.cuts import cuts_of
 from pvfiblets.plotting.page.surfaces import add_image, add_surface, add_tubes, reflects_of
-from pvfiblets.plotting.slices.plane import prepare
+from pvfiblets.plotting.slices.following import prepare
 
 if TYPE_CHECKING:
     from os import PathLike

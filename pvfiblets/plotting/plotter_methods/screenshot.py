@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import sys
 from contextlib import AbstractContextManager, nullcontext
@@ -14,7 +13,9 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
+from pvfiblets.mappers.frames.observers import observe
 from pvfiblets.plotting.actors.registry import A, ActorRegistry
+from pvfiblets.support.real_numbers import is_number
 
 ONE_BIT_FORMATS = (".png", ".tif", ".tiff", ".bmp")  # kinds of files that hold one bit for a pixel
 
@@ -85,7 +86,7 @@ class PrintableComponent(ActorRegistry[A]):
         (1200, 1600)
         """
         scale, supersampling = _whole("scale", scale), _whole("supersampling", supersampling)
-        if dpi is not None and not (_is_number(dpi) and dpi > 0.0):
+        if dpi is not None and not (is_number(dpi) and dpi > 0.0):
             raise ValueError(f"dpi is {dpi!r}; give pixels per inch, a number above 0")
         target = _target(filename, one_bit)
         with _sampled_once(self._plotter) if supersampling > 1 else nullcontext():
@@ -127,25 +128,22 @@ def _taken(plotter: pv.BasePlotter, scale: int, window_size: tuple[int, int] | N
         if not plotter._first_time:  # noqa: SLF001 - else screenshot renders
             plotter.render()
         window = plotter.render_window
-        tag = None if window is None else window.AddObserver("EndEvent", collect)
+        end = None if window is None else observe(window, ("EndEvent",), collect)
         try:
             picture = plotter.screenshot(None, transparent_background=False, scale=scale)
         finally:
-            if tag is not None:
-                window.RemoveObserver(tag)
+            if end is not None:
+                end()
     if errors:
         raise errors[0]
     return np.asarray(picture)[..., :3]
 
 
 def _whole(name: str, value: Any) -> int:
-    if isinstance(value, bool) or not _is_number(value) or value < 1 or value % 1 != 0:
+    if not is_number(value) or value < 1 or value % 1 != 0:
         raise ValueError(f"{name} is {value!r}; give a whole number, 1 or more")
     return int(value)
 
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float, np.number)) and math.isfinite(value)
 
 
 def _target(filename: Any, one_bit: bool) -> Path | BytesIO | None:

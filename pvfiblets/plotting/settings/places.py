@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import replace
 from importlib import import_module
 from typing import Any, ClassVar, Protocol
@@ -15,18 +16,18 @@ class Stored(Protocol):
     default: Any
 
 
-class Place:
+class Place(ABC):
     """A place where an actor keeps a setting: it reads the setting, and applies its changes."""
 
     checks: ClassVar[bool] = False  # whether choices are looked at there, not before
 
+    @abstractmethod
     def read(self, actor: Any, setting: Stored) -> Any:
         """Return the present value."""
-        raise NotImplementedError
 
+    @abstractmethod
     def write(self, actor: Any, setting: Stored, value: Any) -> None:
         """Change it; a refused value leaves all as it was."""
-        raise NotImplementedError
 
     def value_for_copy(self, actor: Any, one: Stored) -> Any:
         """Return the value to pass to a copy."""

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
-from pvfiblets.plotting.slices.plane import before_render
+from pvfiblets.plotting.slices.following import before_render
 from pvfiblets.slices import glyphs
 from pvfiblets.slices.image import SliceImage
 from pvfiblets.slices.vectors import in_scanner_axes
@@ -205,7 +205,7 @@ class _OnPlane:
         self._actor.prop.line_width = owner._width  # noqa: SLF001
         self._actor.prop.interpolation = "Phong"
         renderer.add_actor(self._actor, reset_camera=False, render=False, pickable=False)
-        self._end = before_render(renderer, self, "refresh")
+        self._end = before_render(renderer, self.refresh)
 
     def forget(self) -> None:
         """Make them anew with the next render."""

@@ -16,6 +16,7 @@ import numpy.typing as npt
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkWeakReference
 
+from pvfiblets.mappers.frames.observers import weakly
 from pvfiblets.plotting.active_view import active_view
 from pvfiblets.plotting.slices.pane import Pane
 
@@ -185,18 +186,12 @@ class ObliqueSlice:
         """Add a plane widget of VTK's that turns and pushes the slice, to one of a plotter's views."""
         corners = self.plane.corners
         bounds = np.stack([corners.min(axis=0), corners.max(axis=0)], axis=1).ravel()
-        reference = weakref.WeakMethod(self._dragged)
-
-        def moved(normal: Any, origin: Any) -> None:
-            alive = reference()
-            if alive is not None:
-                alive(normal, origin)
-
         options = {"interaction_event": "always", "outline_translation": False, **options}
         with active_view(plotter, view):
             widget = plotter.add_plane_widget(
-                moved, normal=tuple(self.normal), origin=tuple(self.plane.origin), bounds=tuple(bounds), **options
-            )
+                weakly(self._dragged, passing=True), normal=tuple(self.normal), origin=tuple(self.plane.origin),
+                bounds=tuple(bounds), **options,
+            )  # fmt: skip
         self._widget = vtkWeakReference()
         self._widget.Set(widget)
 

@@ -14,7 +14,8 @@ import numpy.typing as npt
 import pyvista as pv
 from vtkmodules.vtkRenderingAnnotation import vtkCornerAnnotation
 
-from pvfiblets.plotting.slices.plane import SliceActor, before_render
+from pvfiblets.plotting.slices.following import before_render
+from pvfiblets.plotting.slices.plane import SliceActor
 from pvfiblets.slices.frames import PlaneGrid, covered, letters, plane_axes
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ class Pane:
             renderer.add_actor(actor, reset_camera=False, render=False, pickable=False)
         renderer.AddViewProp(self._words)
         renderer.enable_parallel_projection()
-        self._end: Callable[[], None] = before_render(renderer, self, "prepare")
+        self._end: Callable[[], None] = before_render(renderer, self.prepare)
 
     # Directions and camera ----------------------------------------------------------------------
 

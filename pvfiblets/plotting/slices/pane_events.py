@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
 
+from pvfiblets.mappers.frames.observers import observe, weakly
 from pvfiblets.plotting.fiblets.mouse_gestures import Pointing
 
 if TYPE_CHECKING:
     import numpy as np
-    from vtkmodules.vtkRenderingCore import vtkRenderWindowInteractor
 
     from pvfiblets.plotting.slices.pane import Pane
     from pvfiblets.plotting.slices.workspace import Workspace
@@ -42,43 +42,28 @@ class PaneEvents:
         self._handle: int | None = None
         self._last = "axial"
         self._typed: str | None = None
-        self._tags: list[int] = []
+        self._ends: list[Callable[[], None]] = []
         for button in ("Left", "Middle", "Right"):
-            self._listen(f"{button}ButtonPressEvent", getattr(PaneEvents, f"_press_{button.lower()}"))
-            self._listen(f"{button}ButtonReleaseEvent", PaneEvents._release)
-        self._listen("MouseMoveEvent", PaneEvents._move)
-        self._listen("MouseWheelForwardEvent", PaneEvents._wheel_forward)
-        self._listen("MouseWheelBackwardEvent", PaneEvents._wheel_backward)
-        self._listen("KeyPressEvent", PaneEvents._key)
-        self._listen("CharEvent", PaneEvents._char)
-        reference = weakref.WeakMethod(self._clicked)
-
-        def clicked(corners: np.ndarray, click: bool, mode: str) -> None:
-            alive = reference()
-            if alive is not None:
-                alive(corners, click, mode)
-
+            self._listen(f"{button}ButtonPressEvent", getattr(self, f"_press_{button.lower()}"))
+            self._listen(f"{button}ButtonReleaseEvent", self._release)
+        self._listen("MouseMoveEvent", self._move)
+        self._listen("MouseWheelForwardEvent", self._wheel_forward)
+        self._listen("MouseWheelBackwardEvent", self._wheel_backward)
+        self._listen("KeyPressEvent", self._key)
+        self._listen("CharEvent", self._char)
         self._clicks = Pointing(
-            plotter, mode="click", button="left", found=clicked, hovered=None, color="white", start=False
-        )
+            plotter, mode="click", button="left", found=weakly(self._clicked, passing=True), hovered=None,
+            color="white", start=False,
+        )  # fmt: skip
 
-    def _listen(self, event: str, handler: Callable[[PaneEvents], bool]) -> None:
+    def _listen(self, event: str, handler: Callable[[], bool]) -> None:
         """Call a handler for as long as this is alive; if it returns True, the event goes no further."""
-        alive = weakref.ref(self)
-        held: list[int] = []
-
-        def call(interactor: vtkRenderWindowInteractor, _event: str) -> None:
-            there = alive()
-            if there is not None and handler(there):
-                interactor.GetCommand(held[0]).SetAbortFlag(1)
-
-        held.append(self._interactor.AddObserver(event, call, PRIORITY))
-        self._tags.append(held[0])
+        self._ends.append(observe(self._interactor, (event,), weakly(handler), PRIORITY))
 
     def stop(self) -> None:
         """Take all observers back; twice is harmless."""
-        while self._tags:
-            self._interactor.RemoveObserver(self._tags.pop())
+        for end in self._ends:
+            end()
         self._clicks.stop()
 
     @property

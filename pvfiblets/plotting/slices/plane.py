@@ -9,11 +9,10 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkWeakReference
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkRenderingCore import vtkTexture
 
-from pvfiblets.mappers.frames.scene import partly_shown
+from pvfiblets.plotting.slices.following import before_render
 from pvfiblets.slices.frames import checked_position, covered, grid_of, plane_axes, turned
 
 if TYPE_CHECKING:
@@ -28,8 +27,6 @@ Array = npt.NDArray[np.float64]
 
 OVERSAMPLED = 2  # pixels of a slice in the 3-D view along the finest voxel of all layers
 MOST_ACROSS = 768  # pixels along a side of a slice in the 3-D view, whatever its voxels are
-
-_PREPARE = "UserEvent"
 
 _CLEAR = "//VTK::TCoord::Impl\n  if (gl_FragData[0].a <= 0.002) { discard; }\n"
 # Pixels are clear or opaque. Blended, the edge between them would let the background through: it is cut at one half.
@@ -192,42 +189,8 @@ class SlicePlane:
     def enter(self, renderer: vtkRenderer) -> None:
         """Follow a renderer's frames."""
         self.renderer = renderer
-        self._end = before_render(renderer, self, "refresh")
+        self._end = before_render(renderer, self.refresh)
 
     def leave(self) -> None:
         """Follow them no more."""
         self._end()
-
-
-def before_render(renderer: vtkRenderer, owner: Any, method: str) -> Any:
-    """Call an owner's method whenever a renderer begins to draw; returns and rules as of :func:`on_events`."""
-    # `prepare` calls it, too, for renderers that may have nothing to draw.
-    return on_events(renderer, ("StartEvent", _PREPARE), owner, method)
-
-
-def on_events(caller: Any, events: tuple[str, ...], owner: Any, method: str) -> Callable[[], None]:
-    """Call an owner's method at events of an object of VTK's; neither keeps the other alive."""
-    reference = weakref.ref(owner)
-
-    def started(_caller: Any, event: str) -> None:
-        alive = reference()
-        if alive is not None and not (event == "StartEvent" and partly_shown):
-            getattr(alive, method)()
-
-    tags = [caller.AddObserver(event, started) for event in events]
-    kept = vtkWeakReference()
-    kept.Set(caller)
-
-    def end() -> None:
-        there = kept.Get()
-        while tags:
-            tag = tags.pop()
-            if there is not None:
-                there.RemoveObserver(tag)
-
-    return end
-
-
-def prepare(renderer: vtkRenderer) -> None:
-    """Update everything that waits for :func:`before_render`, though the renderer does not draw yet."""
-    renderer.InvokeEvent(_PREPARE)

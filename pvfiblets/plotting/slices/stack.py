@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.mappers.frames.observers import weakly
 from pvfiblets.plotting.settings.settings import Given
 from pvfiblets.plotting.slices.layer import SliceLayer
 from pvfiblets.plotting.slices.plane import SlicePlane
@@ -154,14 +154,7 @@ class SliceStack:
             layer.name, number = f"{stem} {number}", number + 1
         first = not self._layers
         self._layers.append(layer)
-        reference = weakref.WeakMethod(self.changed)
-
-        def changed() -> None:
-            alive = reference()
-            if alive is not None:
-                alive()
-
-        layer.watch(changed)
+        layer.watch(weakly(self.changed))
         if first:
             self._position = layer.image.center
             if isinstance(self._axes_given, str) and self._axes_given == "image":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import Any
@@ -12,7 +11,9 @@ import numpy.typing as npt
 import pyvista as pv
 
 from pvfiblets.mappers.frames.kept_views import KeptViews
+from pvfiblets.mappers.frames.observers import observe, weakly
 from pvfiblets.plotting.slices.contours import PaneContours
+from pvfiblets.plotting.slices.following import before_render, prepare
 from pvfiblets.plotting.slices.layer import SliceLayer
 from pvfiblets.plotting.slices.layouts import LAYOUTS, viewports
 from pvfiblets.plotting.slices.oblique import NAME as OBLIQUE
@@ -20,7 +21,6 @@ from pvfiblets.plotting.slices.oblique import ObliqueSlice, add_oblique_slice
 from pvfiblets.plotting.slices.pane import Pane
 from pvfiblets.plotting.slices.pane_events import PaneEvents
 from pvfiblets.plotting.slices.picking import picked_on_planes
-from pvfiblets.plotting.slices.plane import before_render, on_events, prepare
 from pvfiblets.plotting.slices.point_values import PointValues, streamlines_near, words_of
 from pvfiblets.plotting.slices.seams import show_seams
 from pvfiblets.plotting.slices.stack import SliceStack
@@ -84,18 +84,18 @@ class Workspace:
         self._where: Array = slices.position
         self._removed = False
         self._told = True
-        self._ends = [before_render(one, self, "sync") for one in renderers.values()]
+        self._ends = [before_render(one, self.sync) for one in renderers.values()]
         if plotter.render_window is not None:
-            self._ends.append(on_events(plotter.render_window, ("WindowResizeEvent",), self, "arrange"))
+            self._ends.append(observe(plotter.render_window, ("WindowResizeEvent",), weakly(self.arrange)))
         self._kept: KeptViews | None = None
         if plotter.render_window is not None:
-            self._kept = KeptViews(plotter.render_window, renderers.values(), _weakly(self._prepare))
+            self._kept = KeptViews(plotter.render_window, renderers.values(), weakly(self._prepare))
         self.convention = convention
         self.thickness = thickness
         self.layout = layout
         for pane in self.panes.values():
             slices.show_glyphs_on(pane.renderer, pane.place)
-        slices.watch(_weakly(self._slices_changed))
+        slices.watch(weakly(self._slices_changed))
         self._events: PaneEvents | None = None
         if plotter.iren is not None:
             self._events = PaneEvents(self, plotter)
@@ -286,7 +286,7 @@ class Workspace:
         pane.thickness, pane.cross_hair = self.thickness, self.cross_hair
         self.panes = MappingProxyType({**self.panes, pane.name: pane})
         renderer = self._renderers[pane.name] = pane.renderer
-        self._ends.append(before_render(renderer, self, "sync"))
+        self._ends.append(before_render(renderer, self.sync))
         if self._kept is not None:
             self._kept.follow(renderer)
         self.slices.show_glyphs_on(renderer, pane.place)
@@ -455,17 +455,6 @@ class Workspace:
         for pane in self.panes.values():
             pane.remove()
         self.slices.remove()
-
-
-def _weakly(method: Callable[[], None]) -> Callable[[], None]:
-    reference = weakref.WeakMethod(method)
-
-    def call() -> None:
-        alive = reference()
-        if alive is not None:
-            alive()
-
-    return call
 
 
 def _choice(name: str, given: str, choices: tuple[str, ...]) -> str:

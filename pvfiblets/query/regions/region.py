@@ -10,6 +10,7 @@ A position with a coordinate that is not finite lies in no region, not in ``~reg
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -201,7 +202,7 @@ class Region:
         return stack[0]
 
 
-class Shape(Region):
+class Shape(Region, ABC):
     """One shape.
 
     Parameters
@@ -287,13 +288,13 @@ class Shape(Region):
         """
         return None
 
+    @abstractmethod
     def apart(self, points: Array) -> Array:
         """Return ``(n,)`` mm: distances of finite points ``(n, 3)`` from the shape, 0 inside."""
-        raise NotImplementedError
 
+    @abstractmethod
     def extents(self) -> tuple[Bounds, Bounds]:
         """Return bounds of the shape and of its complement."""
-        raise NotImplementedError
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Shape):

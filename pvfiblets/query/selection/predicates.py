@@ -8,6 +8,7 @@ A streamline without points passes nothing, ends nowhere and stays nowhere; ``~p
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, get_args
@@ -31,7 +32,7 @@ FlagsOf = Callable[[Region, Sampling], Flags]
 _Key = tuple[Region, Sampling]
 
 
-class Predicate:
+class Predicate(ABC):
     """A condition on streamlines; immutable, equal and hashed by content."""
 
     def __and__(self, other: Predicate) -> Predicate:
@@ -46,13 +47,13 @@ class Predicate:
     def __bool__(self) -> bool:
         raise TypeError("a condition is neither true nor false; join conditions with &, | and ~, not with and, or, not")
 
+    @abstractmethod
     def conditions(self) -> Iterator[Condition]:
         """Yield the conditions of the expression."""
-        raise NotImplementedError
 
+    @abstractmethod
     def holds(self, flags: Callable[[Condition], Flags]) -> Mask:
         """Return which streamlines satisfy it, ``(n_streamlines,)`` bool, from the flags of its regions."""
-        raise NotImplementedError
 
     def choose(self, fiblets: FibletSet | Streamlines, *, flags: FlagsOf | None = None) -> Mask:
         """Return the streamlines of a set that satisfy it; see :func:`select`."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from pvfiblets.mappers.frames.observers import observe, weakly
 from pvfiblets.mappers.frames.scene import USUAL_DPI
 from pvfiblets.plotting.colours.scalar_bar_labels import label_format, label_text
 from pvfiblets.web.scene.scalar_bar_layout import MOST_LABELS, Place, Wanted, arrange
@@ -27,13 +27,8 @@ class Bars:
         self._wanted: list[Wanted] = []
         self._placed_for: tuple[Any, ...] = ()
         self.places: list[Place | None] = []
-        this = weakref.ref(self)
-
-        def started(*_: Any) -> None:
-            if (bars := this()) is not None:
-                bars.arrange()
-
-        self._tag = plotter.renderer.AddObserver("StartEvent", started)
+        self.close = observe(plotter.renderer, ("StartEvent",), weakly(self.arrange))
+        """Stop following the window; twice is harmless."""
 
     @property
     def size(self) -> tuple[int, int]:
@@ -90,12 +85,6 @@ class Bars:
             bar.SetVisibility(place is not None)
             if place is not None:
                 _put(bar, title, place, size)
-
-    def close(self) -> None:
-        """Stop following the window; twice is harmless."""
-        if self._tag is not None and self._plotter.render_window is not None:
-            self._plotter.renderer.RemoveObserver(self._tag)
-        self._tag = None
 
 
 def bars_of(drawn: Sequence[tuple[Layer, Any]]) -> list[tuple[str, Layer, Any]]:

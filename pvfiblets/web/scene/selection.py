@@ -251,7 +251,7 @@ def _rows(layer: Layer, actor: Any, ids: np.ndarray) -> list[dict[str, Any]]:
 
 def _values(actor: Any, ids: np.ndarray) -> tuple[np.ndarray, str | None]:
     """Return a number for each streamline, NaN for none, and its name."""
-    from pvfiblets.plotting.fiblets.pick_result import point_values
+    from pvfiblets.plotting.fiblets.scalars import point_values
 
     nothing = np.full(len(ids), np.nan)
     scalars = actor.active_scalars

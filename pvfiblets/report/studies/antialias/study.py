@@ -13,10 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ...record import FRAME, Axes, Figure, Record
-from ...study import LATE, Options, Unavailable
+from ...study import LATE, Options, Study, Unavailable
 from ...timing import timing
 from ...window import Window
 from ..codec.data_sets import files_of
+from ..codec.pixels import lines_of
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 SIZE, QUICK_SIZE, FILE_SIZE = (800, 600), (320, 240), (1000, 800)
 SCREEN = (1920, 1080)
 SEGMENTS, QUICK_SEGMENTS = (1_100_000, 6_000_000), (60_000,)  # of synthetic brains
-STEP, QUICK_STEP, LENGTH = 0.1, 0.5, 94.0  # mm, of its points and of its streamlines on average
+STEP, QUICK_STEP = 0.1, 0.5  # mm, of their points
 BUNDLE, QUICK_BUNDLE = 300, 60  # streamlines of it
 TUBES, QUICK_TUBES = 60, 15
 REFERENCE, QUICK_REFERENCE = 16, 8  # samples along a pixel's side
@@ -84,7 +85,7 @@ def subjects(options: Options) -> list[Subject]:
     import pyvista as pv
 
     from pvfiblets.report.studies.codec.coded import compress
-    from pvfiblets.synthetic import brain_streamlines
+    from pvfiblets.synthetic import brain_streamlines, streamline_count
 
     quick = options.quick
     few = brain_streamlines(QUICK_BUNDLE if quick else BUNDLE, step=QUICK_STEP, seed=options.seed)
@@ -98,7 +99,7 @@ def subjects(options: Options) -> list[Subject]:
         step = QUICK_STEP if quick else STEP
 
         def fill(plotter: pv.BasePlotter) -> None:
-            streamlines = brain_streamlines(max(round(segments * step / LENGTH), 1), step=step, seed=options.seed)
+            streamlines = brain_streamlines(streamline_count(segments, step), step=step, seed=options.seed)
             plotter.add_fiblets(compress(streamlines), show_scalar_bar=False)
             look(plotter, 1.4)
 
@@ -122,9 +123,7 @@ def subjects(options: Options) -> list[Subject]:
         plotter.add_mesh(pv.Sphere(radius=20.0, center=middle, theta_resolution=12, phi_resolution=8), color="white")
 
     def lines(plotter: pv.BasePlotter) -> None:
-        starts, ends = few.offsets[:-1], few.offsets[1:]
-        cells = [np.concatenate([[b - a], np.arange(a, b)]) for a, b in zip(starts, ends, strict=True)]
-        poly = pv.PolyData(np.asarray(few.points, np.float64), lines=np.concatenate(cells))
+        poly = lines_of(pv, few.points, np.asarray(few.offsets))
         plotter.add_mesh(poly, color="orange", line_width=2, lighting=False)
         look(plotter, 3.0)
 
@@ -141,48 +140,16 @@ def subjects(options: Options) -> list[Subject]:
             Subject("lines drawn by VTK", lines, only_vtk=True), *map(file, files)]  # fmt: skip
 
 
-class AntialiasStudy:
-    """Pictures of few samples a pixel, beside the mean of very many."""
-
-    name = "antialias"
-    title = "Smooth edges"
-    approximates = (
-        "The mean of what each pixel shows, by one sample, by what lines cover of it, or by the mean of some pictures."
-    )
-    axes = (
-        Axes("rest", "times/at rest", "errors/at rest", "ms until the picture is finished", "rms error, levels of 255"),
-        Axes("moving", "times/moving", "errors/moving", "ms per frame", "rms error, levels of 255"),
-    )
-    notes = (
-        "PyVista windows, all of VTK's work included; the camera turns by 1.14° between frames. *moving*: a frame "
-        "during the turn; *at rest*: the finished picture, and the time from the change to it. Both "
-        "are the same but for *refined*, which then draws the samples of a screenshot, 16 unless a number is set, "
-        "each with the camera moved by parts of a pixel: for a single set of lines at once, *singly* one "
-        "after the other, as in all other scenes. *samples*: the number of pictures averaged into the finished one. "
-        "*shimmer*: the mean difference of the colours of two frames while the camera turns by 0.1° between them, "
-        "over the pixels that show anything in either.",
-        "Errors are root mean squares over the pixels that show anything, beside the mean of 256 pictures (64 in quick "
-        "runs) whose camera is moved on a regular grid in the pixel: a box filter one pixel wide. It is made for each "
-        "scene without any smoothing, of lines of their full width (OpenGL's own lines of one pixel are thinner where "
-        "they are slanted), of halos that do not blend with lines; *p99* and *max* are of the finished picture.",
-        "*MSAA*, *SSAA* and *FXAA* are VTK's own. MSAA smooths the meshes in a scene, no lines or tubes of this "
-        "program, and averages light, not colours: its error is partly that. SSAA has a wider filter. *lines drawn by "
-        "VTK*: the lines of *bundle* by ``add_mesh``; there, *refined* is set, since nothing of this program is "
-        "in the scene. OpenGL draws other pixels of such lines under MSAA: its reference there is the mean of pictures "
-        "under MSAA of 8.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every scene and variant."""
-        try:
-            import pyvista  # noqa: F401
-        except ImportError as error:
-            raise Unavailable(f"{error.name} is not installed") from error
-        for subject in subjects(options):
-            if not options.allows(subject.name):
-                continue
-            yield from _measured(subject, options)
-
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every scene and variant."""
+    try:
+        import pyvista  # noqa: F401
+    except ImportError as error:
+        raise Unavailable(f"{error.name} is not installed") from error
+    for subject in subjects(options):
+        if not options.allows(subject.name):
+            continue
+        yield from _measured(subject, options)
 
 def differences(picture: Pixels, reference: Pixels) -> dict[str, float]:
     """Return errors of a picture: of all channels of pixels in which either shows something."""
@@ -351,4 +318,33 @@ def _record(subject: Subject, variant: Variant, window: PictureWindow, reference
     )
 
 
-STUDY = AntialiasStudy()
+STUDY = Study(
+    name="antialias",
+    title="Smooth edges",
+    approximates=(
+        "The mean of what each pixel shows, by one sample, by what lines cover of it, or by the mean of some pictures."
+    ),
+    axes=(
+        Axes("rest", "times/at rest", "errors/at rest", "ms until the picture is finished", "rms error, levels of 255"),
+        Axes("moving", "times/moving", "errors/moving", "ms per frame", "rms error, levels of 255"),
+    ),
+    notes=(
+        "PyVista windows, all of VTK's work included; the camera turns by 1.14° between frames. *moving*: a frame "
+        "during the turn; *at rest*: the finished picture, and the time from the change to it. Both "
+        "are the same but for *refined*, which then draws the samples of a screenshot, 16 unless a number is set, "
+        "each with the camera moved by parts of a pixel: for a single set of lines at once, *singly* one "
+        "after the other, as in all other scenes. *samples*: the number of pictures averaged into the finished one. "
+        "*shimmer*: the mean difference of the colours of two frames while the camera turns by 0.1° between them, "
+        "over the pixels that show anything in either.",
+        "Errors are root mean squares over the pixels that show anything, beside the mean of 256 pictures (64 in quick "
+        "runs) whose camera is moved on a regular grid in the pixel: a box filter one pixel wide. It is made for each "
+        "scene without any smoothing, of lines of their full width (OpenGL's own lines of one pixel are thinner where "
+        "they are slanted), of halos that do not blend with lines; *p99* and *max* are of the finished picture.",
+        "*MSAA*, *SSAA* and *FXAA* are VTK's own. MSAA smooths the meshes in a scene, no lines or tubes of this "
+        "program, and averages light, not colours: its error is partly that. SSAA has a wider filter. *lines drawn by "
+        "VTK*: the lines of *bundle* by ``add_mesh``; there, *refined* is set, since nothing of this program is "
+        "in the scene. OpenGL draws other pixels of such lines under MSAA: its reference there is the mean of pictures "
+        "under MSAA of 8.",
+    ),
+    run=run,
+)

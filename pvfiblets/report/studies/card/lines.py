@@ -83,7 +83,7 @@ class LineSamples:
         va, vb = (np.concatenate([value[part] for value in values]).astype(np.float64) for part in (_FIRST, _LAST))
         number = np.repeat(np.arange(len(lines)), [len(line) - 1 for line in lines])
         ca, cb = (np.c_[points, np.ones(len(points))] @ np.asarray(matrix, np.float64).T for points in (a, b))
-        low, high = _inside(ca, cb)
+        low, high = part_in_view(ca, cb)
         kept = np.flatnonzero(low <= high)
         a, b, va, vb, ca, cb, low, high = (x[kept] for x in (a, b, va, vb, ca, cb, low, high))
         number = number[kept]
@@ -187,7 +187,7 @@ class LineSamples:
 _FIRST, _LAST = slice(None, -1), slice(1, None)
 
 
-def _inside(a: Array, b: Array) -> tuple[Array, Array]:
+def part_in_view(a: Array, b: Array) -> tuple[Array, Array]:
     """Return the part of segments, ``(n, 4)`` clip coordinates, that is in the view volume; low > high where none."""
     low, high = np.zeros(len(a)), np.ones(len(a))
     for axis in range(3):

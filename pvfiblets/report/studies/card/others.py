@@ -12,7 +12,7 @@ import numpy.typing as npt
 from pvfiblets.engine.gbuffer import EMPTY as NO_KEY
 from pvfiblets.engine.view import View
 
-from ...cameras import Camera, Lens, orbit
+from ...cameras import Camera, orbit
 from ..tubes.pictures import Truth, helices, reversed_depth_of
 from .findings import EMPTY
 from .scenes import SIZE, SMALL, Judged, Scene
@@ -55,10 +55,10 @@ def capsules_of(lines: Sequence[Array], radius: float) -> SplineTubes:
 
 def judge_depths(gbuffer: GBuffer, tubes: Any, camera: Camera) -> Judged:
     """Hold a G-buffer against where rays meet tubes."""
-    lens, truth = Lens.from_camera(camera), _truth(tubes, camera)
+    truth = _truth(tubes, camera)
     keys = np.frombuffer(gbuffer.depth.read(), np.uint32)
     there = keys != NO_KEY
-    found = truth.errors(lens.distance(reversed_depth_of(keys)), there)
+    found = truth.errors(camera.distance(reversed_depth_of(keys)), there)
     figures = {EMPTY: float(not there.any()), "silhouette, pixels": found["silhouette"],
                "depth, radii": found["depth p99"]}  # fmt: skip
     wrong = (there != truth.there).reshape(camera.size[::-1])
@@ -85,7 +85,7 @@ def _helices() -> tuple[Any, list[Camera]]:
 
 @cache
 def _truth(tubes: Any, camera: Camera) -> Truth:
-    return Truth.from_tubes(tubes, Lens.from_camera(camera))  # the same for all solvers
+    return Truth.from_tubes(tubes, camera)  # the same for all solvers
 
 
 def _tubes(ctx: moderngl.Context, **options: Any) -> Scene:

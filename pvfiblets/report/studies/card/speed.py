@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 SEGMENTS = (1e6, 1e7, 1e8)
 STEP = 0.1  # mm; Schertzer et al. 2022, section 4
-LENGTH = 94.0  # mm of a synthetic streamline on average
 SIZE = (1280, 720)
 DEGREES = 1.14  # a frame: Schertzer et al. 2022, section 4.5
 TOO_SLOW = 100.0  # ms a picture at a million segments
@@ -34,12 +33,12 @@ def named(segments: float) -> str:
 
 def make_brains(segments: tuple[float, ...], folder: Path) -> dict[float, Path]:
     """Make synthetic brains of so many segments, as files in a folder."""
-    from pvfiblets.synthetic import brain
+    from pvfiblets.synthetic import brain, streamline_count
 
     made = {}
     for wanted in segments:
         made[wanted] = folder / f"{wanted:g}.fiblets"
-        brain(max(1, round(wanted * STEP / LENGTH)), STEP, path=made[wanted])
+        brain(streamline_count(wanted, STEP), STEP, path=made[wanted])
     return made
 
 

@@ -23,7 +23,7 @@ from ...drawing import drawing_context
 from ...machine import CARD_STATE
 from ...process import CellProcess, Row
 from ...record import FRAME, Axes, CaseResult, Figure, Record
-from ...study import Budget, Options
+from ...study import Budget, Options, Study
 from ...timing import timing
 from ..speed.cells import path_of_brain
 from ..speed.study import BRAINS, QUICK_SIZES, SIZES, STEP, measured, sections
@@ -71,66 +71,46 @@ def alternatives(quick: bool) -> dict[str, Row]:
     }
 
 
-class CardStudy:
-    """The first minutes of a graphics card."""
+def run(options: Options) -> Iterator[Record | CaseResult]:
+    """Yield a record for every cell and a case for every check, the most important first."""
+    from pvfiblets.engine.gl import capabilities
 
-    name = "card"
-    title = "A card's first minutes"
-    approximates = (
-        "No approximation: does each pipeline draw right, and how many milliseconds do frames, their passes and the "
-        "alternatives to their steps take? Neither VTK nor a display is needed."
-    )
-    axes = (Axes("memory", "times/draw", "costs/memory", "ms per frame", "MB", alternatives=False),)
-    notes = (
-        "A slow flight around synthetic brains of steps of 0.1 mm, after the card's clock has settled. *draw*: each "
-        "frame waited for. *in flight*: the clock's time of a frame while none is waited for; *GPU*: the card's own, "
-        "from timestamps. *pass*: medians of the passes of frames waited for. *steady*: 1 where five frames took as "
-        "long as the five before them. Clocks, power and temperature are those after the frames; *before* is before.",
-        "*switched*: a form of passes that only graphics cards run, left out on a card, or run by software.",
-        "Cases compare with float64 (`pvfiblets gl --check`), and frames with those of the default, bit by bit.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record | CaseResult]:
-        """Yield a record for every cell and a case for every check, the most important first."""
-        from pvfiblets.engine.gl import capabilities
-
-        with drawing_context(options) as ctx:
-            known = capabilities.pipelines(ctx)
-            forms = [form for form in FORMS if form in ctx.extensions]
-        yield CaseResult(
-            "OpenGL", "the default pipeline", f"a context without a window: {options.driver}", "it is compute",
-            Figure(float(known.auto != "compute"), ""), 0.0, known.auto == "compute",
-        )  # fmt: skip
-        for info in known:
-            if not info.available:
-                options.leave_out(f"pipeline {info.name}", info.why_not)
-        with ExitStack() as stack:
-            folder = os.environ.get(BRAINS) or stack.enter_context(tempfile.TemporaryDirectory())
-            cells = plan(options.quick, known.auto or "", forms)
-            brains = stack.enter_context(_Brains(cells, folder))
-            parts = [part for part in parts_of([info.name for info in known if info.available]) if SPEED not in part]
-            first = [part for part in CHECKED_FIRST if part in parts]
-            yield from _checked(options.share(CHECK_SHARE), first, folder)
-            process = CellProcess.for_module("pvfiblets.report.studies.speed.cells")
-            stack.callback(process.close)
-            others = _checked(options, [part for part in parts if part not in first], folder)
-            usual: dict[str, str] = {}
-            while cells:
-                ready = next((cell for cell in cells if brains.has(cell)), None)
-                if ready is None and options.budget.left > 0.0:
-                    if (case := next(others, None)) is not None:
-                        yield case
-                    else:
-                        time.sleep(0.05)
-                    continue
-                cell = ready or cells[0]
-                cells.remove(cell)
-                own = replace(options, budget=Budget(min(options.budget.left, CELL_SECONDS)))
-                done = measured({**cell, "folder": folder}, process, set(), own)
-                if done is not None:
-                    yield from _completed(*done, cell, usual)
-            yield from others
-
+    with drawing_context(options) as ctx:
+        known = capabilities.pipelines(ctx)
+        forms = [form for form in FORMS if form in ctx.extensions]
+    yield CaseResult(
+        "OpenGL", "the default pipeline", f"a context without a window: {options.driver}", "it is compute",
+        Figure(float(known.auto != "compute"), ""), 0.0, known.auto == "compute",
+    )  # fmt: skip
+    for info in known:
+        if not info.available:
+            options.leave_out(f"pipeline {info.name}", info.why_not)
+    with ExitStack() as stack:
+        folder = os.environ.get(BRAINS) or stack.enter_context(tempfile.TemporaryDirectory())
+        cells = plan(options.quick, known.auto or "", forms)
+        brains = stack.enter_context(_Brains(cells, folder))
+        parts = [part for part in parts_of([info.name for info in known if info.available]) if SPEED not in part]
+        first = [part for part in CHECKED_FIRST if part in parts]
+        yield from _checked(options.share(CHECK_SHARE), first, folder)
+        process = CellProcess.for_module("pvfiblets.report.studies.speed.cells")
+        stack.callback(process.close)
+        others = _checked(options, [part for part in parts if part not in first], folder)
+        usual: dict[str, str] = {}
+        while cells:
+            ready = next((cell for cell in cells if brains.has(cell)), None)
+            if ready is None and options.budget.left > 0.0:
+                if (case := next(others, None)) is not None:
+                    yield case
+                else:
+                    time.sleep(0.05)
+                continue
+            cell = ready or cells[0]
+            cells.remove(cell)
+            own = replace(options, budget=Budget(min(options.budget.left, CELL_SECONDS)))
+            done = measured({**cell, "folder": folder}, process, set(), own)
+            if done is not None:
+                yield from _completed(*done, cell, usual)
+        yield from others
 
 def plan(quick: bool, fastest: str, forms: Sequence[str]) -> list[Row]:
     """Return what is measured, the most important first."""
@@ -235,4 +215,21 @@ def _completed(record: Record, row: Row, cell: Row, usual: dict[str, str]) -> It
         )  # fmt: skip
 
 
-STUDY = CardStudy()
+STUDY = Study(
+    name="card",
+    title="A card's first minutes",
+    approximates=(
+        "No approximation: does each pipeline draw right, and how many milliseconds do frames, their passes and the "
+        "alternatives to their steps take? Neither VTK nor a display is needed."
+    ),
+    axes=(Axes("memory", "times/draw", "costs/memory", "ms per frame", "MB", alternatives=False),),
+    notes=(
+        "A slow flight around synthetic brains of steps of 0.1 mm, after the card's clock has settled. *draw*: each "
+        "frame waited for. *in flight*: the clock's time of a frame while none is waited for; *GPU*: the card's own, "
+        "from timestamps. *pass*: medians of the passes of frames waited for. *steady*: 1 where five frames took as "
+        "long as the five before them. Clocks, power and temperature are those after the frames; *before* is before.",
+        "*switched*: a form of passes that only graphics cards run, left out on a card, or run by software.",
+        "Cases compare with float64 (`pvfiblets gl --check`), and frames with those of the default, bit by bit.",
+    ),
+    run=run,
+)

@@ -21,7 +21,6 @@ QUICK_STEPS = (0.1, 0.5)
 # made freely grows with the square root of the step, so does the noise of others.
 NOISE = 4.0
 NOISE_STEP = 0.2
-LENGTH = 94.0  # mm of a synthetic streamline on average
 SMALL = 1000  # points; smaller sets are measured, but not drawn: their times are the cost of a call
 
 
@@ -65,10 +64,10 @@ def file_sets(options: Options, points: int) -> Iterator[DataSet]:
 
 def synthetic_tracking(step: float, noisy: bool, points: int, seed: int) -> Streamlines:
     """Make about so many points, of constant step."""
-    from pvfiblets.synthetic import brain_streamlines
+    from pvfiblets.synthetic import brain_streamlines, streamline_count
 
     noise = NOISE * (step / NOISE_STEP) ** 0.5 if noisy else 0.0
-    streamlines = brain_streamlines(max(round(points * step / LENGTH), 1), step, seed, noise=noise)
+    streamlines = brain_streamlines(streamline_count(points, step), step, seed, noise=noise)
     return thinned([streamlines], points)[0]
 
 

@@ -15,7 +15,7 @@ from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.streamlines import Streamlines
 
 from ...record import Axes, Figure, Record
-from ...study import Options
+from ...study import Options, Study
 from ...timing import Comparison, Turns
 from .data_sets import DataSet
 from .errors import median_step
@@ -31,36 +31,12 @@ Floats = npt.NDArray[np.float64]
 Source = FibletSet | Streamlines
 
 
-class MeasuresStudy:
-    """Measures of whole sets, coded at the default, more finely and more coarsely."""
-
-    name = "measures"
-    title = "Measures of coded sets"
-    approximates = "Measures of coded points, beside the measures of the original points."
-    axes = (
-        Axes("length", "costs/size", "errors/length", "bytes per point", "largest error of a length, %"),
-        Axes("density", "costs/size", "errors/density", "bytes per point", "streamlines counted in other voxels, %"),
-    )
-    across = ("costs/size", "errors/length", "errors/ends", "errors/direction", "errors/curvature", "errors/density",
-              "errors/connectome", "times/table")  # fmt: skip
-    notes = (
-        "*default*: the usual error bound of a tenth of a step; others are multiples of it. *length*: largest error "
-        "of a streamline's length, %. *ends*: largest distance of a first or last point, mm. *direction*: mean angle "
-        "between the segments of both, degrees. *curvature*: the error of mean curvature that 99 % of the streamlines "
-        f"keep, % of the set's median. *density*: visits of streamlines to voxels of {VOXEL:g} mm that only one of the "
-        "two maps has, % of all visits. *connectome*: the same of connections between parcels, cubes of "
-        f"{PARCEL:g} mm.",
-        "Curvature is measured over chords that the error bound leaves right: a finer bound makes it that of the "
-        "points. Where it is not within 2 %, ``table`` warns and names the error bound that is needed.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every set and error bound."""
-        for data in chain(trackings(options), whole_files(options)):
-            if not options.allows(data.name):
-                continue
-            yield from _measured(data, options)
-
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every set and error bound."""
+    for data in chain(trackings(options), whole_files(options)):
+        if not options.allows(data.name):
+            continue
+        yield from _measured(data, options)
 
 def _measured(data: DataSet, options: Options) -> Iterator[Record]:
     from pvfiblets import compress
@@ -134,4 +110,25 @@ def _errors(truth: dict[str, Floats], found: dict[str, Floats], step: float) -> 
     }  # fmt: skip
 
 
-STUDY = MeasuresStudy()
+STUDY = Study(
+    name="measures",
+    title="Measures of coded sets",
+    approximates="Measures of coded points, beside the measures of the original points.",
+    axes=(
+        Axes("length", "costs/size", "errors/length", "bytes per point", "largest error of a length, %"),
+        Axes("density", "costs/size", "errors/density", "bytes per point", "streamlines counted in other voxels, %"),
+    ),
+    across=("costs/size", "errors/length", "errors/ends", "errors/direction", "errors/curvature", "errors/density",
+              "errors/connectome", "times/table"),
+    notes=(
+        "*default*: the usual error bound of a tenth of a step; others are multiples of it. *length*: largest error "
+        "of a streamline's length, %. *ends*: largest distance of a first or last point, mm. *direction*: mean angle "
+        "between the segments of both, degrees. *curvature*: the error of mean curvature that 99 % of the streamlines "
+        f"keep, % of the set's median. *density*: visits of streamlines to voxels of {VOXEL:g} mm that only one of the "
+        "two maps has, % of all visits. *connectome*: the same of connections between parcels, cubes of "
+        f"{PARCEL:g} mm.",
+        "Curvature is measured over chords that the error bound leaves right: a finer bound makes it that of the "
+        "points. Where it is not within 2 %, ``table`` warns and names the error bound that is needed.",
+    ),
+    run=run,
+)

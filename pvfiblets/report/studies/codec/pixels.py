@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...record import Axes, Figure, Record
-from ...study import Options, Unavailable
+from ...study import Options, Study, Unavailable
 from ...window import Window
 from .baselines.directions import PaperFiblets, QFib
 from .data_sets import DataSet, file_sets
@@ -29,35 +29,16 @@ VIEWS = {"far": 1.0, "close": 8.0}  # zoom
 Pixels = npt.NDArray[np.bool_]
 
 
-class PixelsStudy:
-    """Pixels of compressed lines that differ from the raw lines'."""
-
-    name = "pixels"
-    title = "Pixels of compressed lines"
-    approximates = "The pixels that VTK's lines through the raw points take."
-    axes = (Axes("other", "costs/size", "errors/other", "bytes per point", "other pixels, % of those drawn"),)
-    across = ("errors/other", "errors/beyond a pixel")
-    notes = (
-        "Figure 8 of Schertzer et al. 2022: a few streamlines, one pixel wide, without light, far (all in view) and "
-        "close (8 times nearer). *other*: pixels covered in only one of the two pictures, as a share of those covered "
-        "in either; *beyond a pixel*: differing pixels whose neighbours in the other picture, corners included, are "
-        "empty.",
-        "*by VTK*: decoded points through VTK's own lines, as the raw ones are: the effect of compression alone. "
-        "*fiblets, drawn*: by this program, which snaps ends of segments to pixels; *kept to a thousandth of a step*: "
-        "the same with a negligible error, which leaves the difference between the two ways of rasterising.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every set, view and method."""
-        try:
-            import pyvista as pv
-        except ImportError as error:
-            raise Unavailable(f"{error.name} is not installed") from error
-        for data in _sets(options):
-            if not options.allows(data.name):
-                continue
-            yield from _measured(pv, data, options)
-
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every set, view and method."""
+    try:
+        import pyvista as pv
+    except ImportError as error:
+        raise Unavailable(f"{error.name} is not installed") from error
+    for data in _sets(options):
+        if not options.allows(data.name):
+            continue
+        yield from _measured(pv, data, options)
 
 def _sets(options: Options) -> Iterator[DataSet]:
     from pvfiblets.synthetic.trackers import tracked_streamlines
@@ -167,4 +148,20 @@ class _Scene(Window):
         return np.asarray(image[..., :3].max(axis=2) > 0)
 
 
-STUDY = PixelsStudy()
+STUDY = Study(
+    name="pixels",
+    title="Pixels of compressed lines",
+    approximates="The pixels that VTK's lines through the raw points take.",
+    axes=(Axes("other", "costs/size", "errors/other", "bytes per point", "other pixels, % of those drawn"),),
+    across=("errors/other", "errors/beyond a pixel"),
+    notes=(
+        "Figure 8 of Schertzer et al. 2022: a few streamlines, one pixel wide, without light, far (all in view) and "
+        "close (8 times nearer). *other*: pixels covered in only one of the two pictures, as a share of those covered "
+        "in either; *beyond a pixel*: differing pixels whose neighbours in the other picture, corners included, are "
+        "empty.",
+        "*by VTK*: decoded points through VTK's own lines, as the raw ones are: the effect of compression alone. "
+        "*fiblets, drawn*: by this program, which snaps ends of segments to pixels; *kept to a thousandth of a step*: "
+        "the same with a negligible error, which leaves the difference between the two ways of rasterising.",
+    ),
+    run=run,
+)

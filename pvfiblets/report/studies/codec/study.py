@@ -14,7 +14,7 @@ from pvfiblets.codec.small_sets import prefer_kernels
 from pvfiblets.streamlines import Streamlines
 
 from ...record import Axes, Figure, Record
-from ...study import Options
+from ...study import Options, Study
 from ...timing import Comparison, Turns
 from .baselines.directions import PaperFiblets, QFib
 from .baselines.linearised import linearised
@@ -123,77 +123,38 @@ def _dipy(tolerance: float) -> Callable[[float], Any]:
     return lambda step: linearised(tolerance * step)
 
 
-class CodecStudy:
-    """Fiblets beside other variants of keeping streamlines."""
+def _measured(
+    data: DataSet, chosen: list[Variant], missing: set[str], options: Options
+) -> Iterator[Record]:
+    points, offsets = data.streamlines.points, np.asarray(data.streamlines.offsets, np.int64)
+    step = median_step(points, offsets)
+    compared = Comparison(data.name, options, Turns(), len(points), "point")
+    for variant in chosen:
+        label = f"{variant.name} {variant.setting}".strip()
+        if variant.name in missing or not compared.allows(label):
+            continue
+        try:
+            record, calls = measured(data, variant, points, offsets, step)
+            compared.add(record, **calls)
+        except ImportError as error:
+            missing.add(variant.name)
+            options.leave_out(variant.name, f"{error.name or error} is not installed")
+        except ValueError as error:
+            compared.refuse(label, error)
+    yield from compared.finish()
 
-    name = "codec"
-    title = "Compressed streamlines"
-    approximates = "Points of streamlines kept in fewer bytes: fiblets, beside other variants of keeping them."
-    axes = (
-        Axes("size-max", "costs/size", "errors/max in steps", "bytes per point", "largest error, steps"),
-        Axes("size-mean", "costs/size", "errors/mean in steps", "bytes per point", "mean error, steps"),
-        Axes("compress", "times/compress", "errors/max in steps", "compress, ns per point", "largest error, steps"),
-        Axes(
-            "decompress", "times/decompress", "errors/max in steps", "decompress, ns per point", "largest error, steps"
-        ),
-    )
-    notes = (
-        "Errors are distances of decoded points from the originals, as float64, point by point. A step is the median "
-        "distance between consecutive points. *direction* is the angle between the tangents of the original and of the "
-        "decoded line, over both ends of all segments longer than a pixel of a full-screen view, a 2000th of the "
-        "bounds' diagonal; a tangent is the mean direction of the two segments at a point; at its first point, a "
-        "fiblet is drawn with the direction of its first segment. "
-        "Raw points are float32: 12 bytes each. All variants count 4 bytes a "
-        "streamline for its number of points where decoding needs it. Times are of one thread, in memory: no file is "
-        "read or written. "
-        "Sets are cut to a bounded number of points by leaving streamlines out evenly, which their names say. Those of "
-        f"fewer than {SMALL:,} points are measured but not drawn: their times are the cost of a call.",
-        "*fiblets*: greedy encoder, with the error bound as the setting (*default*: a tenth of the step, where steps "
-        "vary or are coarse a 4000th of a view's diagonal at most, and directions within 10°; others do not bound "
-        "directions); *look-ahead*: effort high; *fiblets of 30 "
-        "points*: records of at most 30 points instead of 60. *QFib*, *paper's fiblets*: from their description "
-        "in Schertzer et al. 2022 (pvfiblets/report/studies/codec/baselines/directions.py says what it leaves open), "
-        "with the file's "
-        "median step: what steps vary by adds up. *dipy linearised*: `compress_streamlines` with the tolerance as the "
-        "setting; its points cannot be had back, so its error is the distance from the remaining line, and nothing is "
-        "decompressed. *zlib* (level 6) and *zstd* (level 3) lose nothing.",
-        "Made-up sets: whole-brain-like tracking of constant step (pvfiblets.synthetic); *noisy* ones turn by an "
-        "independent random angle at every step as well, 4° per axis at 0.2 mm and in proportion to the step's root "
-        "otherwise, much as iFOD1 does.",
-    )
 
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every data set and variant."""
-        if options.quick:
-            options.points = min(options.points, QUICK_POINTS)
-        chosen = variants(options.quick)
-        missing: set[str] = set()
-        prefer_kernels("coding")  # a set of so few points would be coded without
-        prefer_kernels("decoding")
-        with one_thread():
-            for data in data_sets(options):
-                yield from self._measured(data, chosen, missing, options)
-
-    def _measured(
-        self, data: DataSet, chosen: list[Variant], missing: set[str], options: Options
-    ) -> Iterator[Record]:
-        points, offsets = data.streamlines.points, np.asarray(data.streamlines.offsets, np.int64)
-        step = median_step(points, offsets)
-        compared = Comparison(data.name, options, Turns(), len(points), "point")
-        for variant in chosen:
-            label = f"{variant.name} {variant.setting}".strip()
-            if variant.name in missing or not compared.allows(label):
-                continue
-            try:
-                record, calls = measured(data, variant, points, offsets, step)
-                compared.add(record, **calls)
-            except ImportError as error:
-                missing.add(variant.name)
-                options.leave_out(variant.name, f"{error.name or error} is not installed")
-            except ValueError as error:
-                compared.refuse(label, error)
-        yield from compared.finish()
-
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every data set and variant."""
+    if options.quick:
+        options.points = min(options.points, QUICK_POINTS)
+    chosen = variants(options.quick)
+    missing: set[str] = set()
+    prefer_kernels("coding")  # a set of so few points would be coded without
+    prefer_kernels("decoding")
+    with one_thread():
+        for data in data_sets(options):
+            yield from _measured(data, chosen, missing, options)
 
 def measured(
     data: DataSet, variant: Variant, points: Points, offsets: Offsets, step: float
@@ -236,4 +197,41 @@ def one_thread() -> Iterator[None]:
         numba.set_num_threads(before)
 
 
-STUDY = CodecStudy()
+STUDY = Study(
+    name="codec",
+    title="Compressed streamlines",
+    approximates="Points of streamlines kept in fewer bytes: fiblets, beside other variants of keeping them.",
+    axes=(
+        Axes("size-max", "costs/size", "errors/max in steps", "bytes per point", "largest error, steps"),
+        Axes("size-mean", "costs/size", "errors/mean in steps", "bytes per point", "mean error, steps"),
+        Axes("compress", "times/compress", "errors/max in steps", "compress, ns per point", "largest error, steps"),
+        Axes(
+            "decompress", "times/decompress", "errors/max in steps", "decompress, ns per point", "largest error, steps"
+        ),
+    ),
+    notes=(
+        "Errors are distances of decoded points from the originals, as float64, point by point. A step is the median "
+        "distance between consecutive points. *direction* is the angle between the tangents of the original and of the "
+        "decoded line, over both ends of all segments longer than a pixel of a full-screen view, a 2000th of the "
+        "bounds' diagonal; a tangent is the mean direction of the two segments at a point; at its first point, a "
+        "fiblet is drawn with the direction of its first segment. "
+        "Raw points are float32: 12 bytes each. All variants count 4 bytes a "
+        "streamline for its number of points where decoding needs it. Times are of one thread, in memory: no file is "
+        "read or written. "
+        "Sets are cut to a bounded number of points by leaving streamlines out evenly, which their names say. Those of "
+        f"fewer than {SMALL:,} points are measured but not drawn: their times are the cost of a call.",
+        "*fiblets*: greedy encoder, with the error bound as the setting (*default*: a tenth of the step, where steps "
+        "vary or are coarse a 4000th of a view's diagonal at most, and directions within 10°; others do not bound "
+        "directions); *look-ahead*: effort high; *fiblets of 30 "
+        "points*: records of at most 30 points instead of 60. *QFib*, *paper's fiblets*: from their description "
+        "in Schertzer et al. 2022 (pvfiblets/report/studies/codec/baselines/directions.py says what it leaves open), "
+        "with the file's "
+        "median step: what steps vary by adds up. *dipy linearised*: `compress_streamlines` with the tolerance as the "
+        "setting; its points cannot be had back, so its error is the distance from the remaining line, and nothing is "
+        "decompressed. *zlib* (level 6) and *zstd* (level 3) lose nothing.",
+        "Made-up sets: whole-brain-like tracking of constant step (pvfiblets.synthetic); *noisy* ones turn by an "
+        "independent random angle at every step as well, 4° per axis at 0.2 mm and in proportion to the step's root "
+        "otherwise, much as iFOD1 does.",
+    ),
+    run=run,
+)

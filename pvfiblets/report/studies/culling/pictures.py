@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +12,7 @@ import numpy.typing as npt
 from pvfiblets.engine import View
 from pvfiblets.engine.gbuffer import EMPTY
 
-from ...cameras import ELEVATION, VERTICAL_ANGLE, Camera
+from ...cameras import circling, fitting
 from ...record import Figure
 
 DISTANCES = {"far": 1.0, "close": 1.0 / 3.0, "inside": 0.06}
@@ -39,15 +38,10 @@ def views(bounds: Sequence[float], kind: str, degrees: float, frames: int, size:
     """Return views from around a set's middle, so many degrees apart."""
     box = np.array(bounds, np.float64).reshape(3, 2)
     centre, radius = box.mean(axis=1), 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
-    narrow = min(1.0, size[0] / size[1]) * math.tan(math.radians(VERTICAL_ANGLE / 2))
-    distance = DISTANCES[kind] * radius / math.sin(math.atan(narrow))
-    up = math.radians(ELEVATION)
-    found = []
-    for turn in np.radians(141.0 + degrees * np.arange(frames)):
-        eye = centre + distance * np.array([math.cos(up) * math.cos(turn), math.cos(up) * math.sin(turn), math.sin(up)])
-        near, far = max(distance - 1.02 * radius, NEAR * radius), distance + 1.02 * radius
-        found.append(View(size, Camera(size, eye, centre, near, far).model_view_projection))
-    return found
+    distance = DISTANCES[kind] * fitting(radius, size)
+    near, far = max(distance - 1.02 * radius, NEAR * radius), distance + 1.02 * radius
+    turns = np.radians(141.0 + degrees * np.arange(frames))
+    return [View(size, one.model_view_projection) for one in circling(centre, distance, turns, size, near, far)]
 
 
 def streamlines_of(picture: Any) -> npt.NDArray[np.int64]:

@@ -15,7 +15,7 @@ from pvfiblets.engine.errors import EngineError
 
 from ...drawing import drawing_context
 from ...record import Axes, Figure, Record
-from ...study import Options
+from ...study import Options, Study
 from ...timing import Comparison, turns_of
 from ..codec.data_sets import file_sets
 from .flights import Flight
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 SEGMENTS = 12_000_000  # of the synthetic brain
 QUICK_SEGMENTS = 500_000
 STEP = 0.1  # mm
-LENGTH = 94.0  # mm of a synthetic streamline on average
 FILE_POINTS = 4_000_000  # to which files are cut
 QUICK_FILE_POINTS = 500_000
 FILES = 3  # the largest
@@ -125,70 +124,38 @@ class _Basis:
         return averaged(colours(picture), FINE)
 
 
-class CullingStudy:
-    """Culling and levels of detail, beside drawing everything and beside drawing fewer streamlines."""
+def _measured(ctx: moderngl.Context, scene: Scene, options: Options) -> Iterator[Record]:
+    compared = Comparison(scene.name, options, turns_of(ctx), len(scene.path) - 1)
+    with ExitStack() as stack:
+        basis: _Basis | None = None
+        for variant in variants(options.quick):
+            label = f"{variant.name} ({variant.setting})"
+            if not compared.allows(label):
+                continue
+            try:
+                basis = basis or _Basis(ctx, scene)
+                record, flight = measured(ctx, scene, variant, basis, stack)
+                compared.add(record, draw=flight)
+            except EngineError as error:
+                compared.refuse(label, error)
+        yield from compared.finish()
 
-    name = "culling"
-    title = "Culling and level of detail"
-    approximates = (
-        "Pictures of all fiblets and all their points, by drawing less: fiblets that others hide are left out, far "
-        "ones are drawn as one segment; beside it, what many viewers do, which is to draw fewer streamlines."
-    )
-    axes = (
-        Axes("wrong", "times/draw", "errors/wrong", "ms per frame", "pixels of another streamline, %"),
-        Axes("colour", "times/draw", "errors/colour", "ms per frame", "mean difference of colours, %"),
-        Axes("fine", "times/draw", "errors/fine", "ms per frame", "difference to a fine picture, %"),
-        Axes("culled", "times/draw", "errors/wrong by culling", "ms per frame", "pixels changed by culling, %"),
-    )
-    notes = (
-        "The right picture draws every point of every fiblet in the view volume. *wrong*: pixels that show another "
-        "streamline than the right picture, a line where it has none, or none where it has one, as a share of its "
-        "covered pixels; *coverage*: only the latter two; *colour*: the difference of the colours of directions, with "
-        "black where nothing is; *fine*: the same from a picture of 3×3 samples a pixel, averaged: lines are thinner "
-        "than the space between them, so chance decides which line a pixel shows; this is the error of the right "
-        "picture itself. *wrong by culling*: as *wrong*, from the picture of the same level of detail without "
-        "culling, which isolates the effect of culling.",
-        "*none*: only fiblets outside the view volume are left out. *two-phase*: fiblets hidden in the same picture "
-        "are left out, which changes no pixel. *coverage*: fiblets hidden in the last picture, as in Schertzer et al. "
-        "2022, section 3.4. *auto*, the default: two-phase while it is the faster one. The setting is the level of "
-        "detail: a fiblet whose points all lie so near to the segment between its ends is drawn as that segment "
-        "(section 3.4.4); *every point* turns it off. *fewer streamlines*: one of two or four, two-phase.",
-        "Names of data say where the eye is and how far it turns between frames: *far*, from where the whole set fits "
-        "the picture; *close*, a third of that; *inside*, near the middle. Every frame is one step from the one "
-        "before. Files are seen from far, by 1.14° a frame. Pictures are of the engine without VTK, each waited for. "
-        "Where OpenGL is software, times are the processor time of all its threads; on a graphics card they are "
-        "elapsed. *memory*: all buffers and textures on the GPU, those of the picture included; *drawn*: fiblets that "
-        "neither the view volume nor culling leaves out, of all.",
-    )
 
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every scene and variant."""
-        with drawing_context(options) as ctx:
-            for scene in scenes(options):
-                yield from self._measured(ctx, scene, options)
-
-    def _measured(self, ctx: moderngl.Context, scene: Scene, options: Options) -> Iterator[Record]:
-        compared = Comparison(scene.name, options, turns_of(ctx), len(scene.path) - 1)
-        with ExitStack() as stack:
-            basis: _Basis | None = None
-            for variant in variants(options.quick):
-                label = f"{variant.name} ({variant.setting})"
-                if not compared.allows(label):
-                    continue
-                try:
-                    basis = basis or _Basis(ctx, scene)
-                    record, flight = measured(ctx, scene, variant, basis, stack)
-                    compared.add(record, draw=flight)
-                except EngineError as error:
-                    compared.refuse(label, error)
-            yield from compared.finish()
-
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every scene and variant."""
+    with drawing_context(options) as ctx:
+        for scene in scenes(options):
+            yield from _measured(ctx, scene, options)
 
 def scenes(options: Options) -> Iterator[Scene]:
     """Make or read one set after the other, and fly around each."""
+    from pvfiblets.synthetic import brain as synthetic_brain
+    from pvfiblets.synthetic import streamline_count
+
     size = QUICK_SIZE if options.quick else SIZE
     frames = QUICK_FRAMES if options.quick else FRAMES
-    brain = _synthetic_brain(options)
+    count = streamline_count(QUICK_SEGMENTS if options.quick else SEGMENTS, STEP)
+    brain = synthetic_brain(count, STEP, options.seed)
     for kind, degrees in QUICK_FLIGHTS if options.quick else FLIGHTS:
         turn = "still" if degrees == STILL else f"{degrees:g}° a frame"
         path = views(brain.bounds, kind, degrees, frames + 1, size)
@@ -208,14 +175,6 @@ def scenes(options: Options) -> Iterator[Scene]:
             continue
         path = views(fiblets.bounds, "far", SLOW, frames + 1, size)
         yield Scene(data.name, data.group, fiblets, path)
-
-
-def _synthetic_brain(options: Options) -> FibletSet:
-    """Make a brain of streamlines."""
-    from pvfiblets.synthetic import brain
-
-    segments = QUICK_SEGMENTS if options.quick else SEGMENTS
-    return brain(max(round(segments * STEP / LENGTH), 1), STEP, options.seed)
 
 
 def measured(
@@ -253,4 +212,38 @@ def measured(
     return record, flight
 
 
-STUDY = CullingStudy()
+STUDY = Study(
+    name="culling",
+    title="Culling and level of detail",
+    approximates=(
+        "Pictures of all fiblets and all their points, by drawing less: fiblets that others hide are left out, far "
+        "ones are drawn as one segment; beside it, what many viewers do, which is to draw fewer streamlines."
+    ),
+    axes=(
+        Axes("wrong", "times/draw", "errors/wrong", "ms per frame", "pixels of another streamline, %"),
+        Axes("colour", "times/draw", "errors/colour", "ms per frame", "mean difference of colours, %"),
+        Axes("fine", "times/draw", "errors/fine", "ms per frame", "difference to a fine picture, %"),
+        Axes("culled", "times/draw", "errors/wrong by culling", "ms per frame", "pixels changed by culling, %"),
+    ),
+    notes=(
+        "The right picture draws every point of every fiblet in the view volume. *wrong*: pixels that show another "
+        "streamline than the right picture, a line where it has none, or none where it has one, as a share of its "
+        "covered pixels; *coverage*: only the latter two; *colour*: the difference of the colours of directions, with "
+        "black where nothing is; *fine*: the same from a picture of 3×3 samples a pixel, averaged: lines are thinner "
+        "than the space between them, so chance decides which line a pixel shows; this is the error of the right "
+        "picture itself. *wrong by culling*: as *wrong*, from the picture of the same level of detail without "
+        "culling, which isolates the effect of culling.",
+        "*none*: only fiblets outside the view volume are left out. *two-phase*: fiblets hidden in the same picture "
+        "are left out, which changes no pixel. *coverage*: fiblets hidden in the last picture, as in Schertzer et al. "
+        "2022, section 3.4. *auto*, the default: two-phase while it is the faster one. The setting is the level of "
+        "detail: a fiblet whose points all lie so near to the segment between its ends is drawn as that segment "
+        "(section 3.4.4); *every point* turns it off. *fewer streamlines*: one of two or four, two-phase.",
+        "Names of data say where the eye is and how far it turns between frames: *far*, from where the whole set fits "
+        "the picture; *close*, a third of that; *inside*, near the middle. Every frame is one step from the one "
+        "before. Files are seen from far, by 1.14° a frame. Pictures are of the engine without VTK, each waited for. "
+        "Where OpenGL is software, times are the processor time of all its threads; on a graphics card they are "
+        "elapsed. *memory*: all buffers and textures on the GPU, those of the picture included; *drawn*: fiblets that "
+        "neither the view volume nor culling leaves out, of all.",
+    ),
+    run=run,
+)

@@ -7,6 +7,8 @@ and ``P <- P + step (q X)`` (paper: Schertzer et al. 2022, section 3.3.1 and app
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import numpy as np
 import numpy.typing as npt
 
@@ -14,6 +16,7 @@ from pvfiblets.codec.direction_codebook import quaternions
 from pvfiblets.codec.layout import DIRECTION_SCALE, PLAIN_BYTES, WIDE_HEADER, Kind
 
 Array = npt.NDArray[np.float64]
+Number = TypeVar("Number", bound=np.floating)
 
 
 def first_frame(word: int) -> tuple[Array, Array]:
@@ -26,13 +29,13 @@ def first_frame(word: int) -> tuple[Array, Array]:
     return d, (np.array([w, 0.0, y, z]) if forward else np.array([-z, y, 0.0, w]))
 
 
-def rotate_x(q: Array) -> Array:
+def rotate_x(q: npt.NDArray[Number]) -> npt.NDArray[Number]:
     """First column of a quaternion's rotation matrix: where it turns X."""
     w, x, y, z = q
     return np.array([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)])
 
 
-def product(a: Array, b: Array) -> Array:
+def product(a: npt.NDArray[Number], b: npt.NDArray[Number]) -> npt.NDArray[Number]:
     """Product of two quaternions, ``w`` first."""
     w, x, y, z = a
     tw, tx, ty, tz = b

@@ -12,11 +12,11 @@ import numpy.typing as npt
 from pvfiblets.codec.direction_codebook import CAP_DEGREES, quaternions
 
 from ...record import Axes, Figure, Record
-from ...study import Options
+from ...study import Options, Study
 from ...timing import Comparison, Turns
 from ..codec.errors import error_figures
 from . import decoders
-from .reference import first_frame
+from .reference import first_frame, product, rotate_x
 
 STEPS = (0.05, 0.1, 0.2, 0.5, 1.0)  # mm
 QUICK_STEPS = (0.1, 1.0)
@@ -61,76 +61,33 @@ def exact(fiblets: Made) -> npt.NDArray[np.longdouble]:
     # The meaning is that of `reference`: products of the table's quaternions as they are stored.
     long = np.longdouble
     table = quaternions()[fiblets.cap].astype(long)
-    q = fiblets.frames.astype(long)
+    q = fiblets.frames.astype(long).T
     points = np.empty((*fiblets.codes.shape[:1], decoders.POINTS, 3), long)
     points[:, 0] = fiblets.anchors
     for i in range(1, decoders.POINTS):
         if i > 1:
-            a, b = q.T, table[fiblets.codes[:, i - 2]].T
-            q = np.stack(
-                [
-                    a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-                    a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-                    a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-                    a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
-                ],
-                axis=1,
-            )
-        w, x, y, z = q.T
-        forward = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1)
-        points[:, i] = points[:, i - 1] + long(fiblets.step) * forward
+            q = product(q, table[fiblets.codes[:, i - 2]].T)
+        points[:, i] = points[:, i - 1] + long(fiblets.step) * rotate_x(q).T
     return points
 
 
-class DecodeStudy:
-    """Decoding of direction codes in all combinations of order, number format, algebra and source."""
-
-    name = "decode"
-    title = "Decoding of fiblets"
-    approximates = (
-        "Points that codes stand for, by finite numbers: sequential or parallel prefix, float32 or float64, rotations "
-        "as quaternions or matrices, from a table or by its closed form."
-    )
-    axes = (
-        Axes("max", "times/decode", "errors/max in steps", "ns per point", "largest error, steps"),
-        Axes("mean", "times/decode", "errors/mean in steps", "ns per point", "mean error, steps"),
-        Axes("drift", "", "errors/mean at point ", "point of the fiblet", "mean error, steps", series=True),
-    )
-    notes = (
-        "Fiblets of 60 points with random first directions and codes, their anchors up to 100 mm from the middle along "
-        "each axis: rounding coordinates of that size alone costs float32 up to 7 nm at every addition. Errors are "
-        "distances from the same products in NumPy's longest number format. The codec's own variants: "
-        "sequential, quaternions, table, in float32 on graphics cards and in float64 on the CPU; prefix, quaternions, "
-        "table, float32 where a work group decodes a fiblet together.",
-        "*closed form*: the formula that the table was made by, without the table's rounding to 16-bit integers, so "
-        "that it is another direction by up to that; *rounded*: with it, where float32 may still fall on the other "
-        "side. The table's quaternions are float32, so of unit length within 1e-7 only. What they mean is their "
-        "product as the sequential decoder takes it; matrices, the prefix network and the closed form take them in "
-        "another order, or as exact rotations, which is all that float64 shows of these: no digits are lost, and it is "
-        "far below any promise.",
-        "Times are of one thread of the CPU, all variants compiled alike. The prefix network does "
-        "more work (six passes of up to 32 products) so that 32 threads of a graphics card can share it: its time here "
-        "is that of the work alone.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every set and variant."""
-        n = QUICK_FIBLETS if options.quick else FIBLETS
-        steps, caps = (QUICK_STEPS, QUICK_CAPS) if options.quick else (STEPS, CAPS)
-        sets = [("steps", step, USUAL_CAP) for step in steps] + [("caps", USUAL_STEP, cap) for cap in caps]
-        for group, step, cap in sets:
-            name = f"steps of {step:g} mm, cap angle {CAP_DEGREES[cap]:g}°"
-            fiblets = made(n, cap, step, options.seed)
-            truth = exact(fiblets)
-            often = replace(options, repeats=REPEATS * options.repeats)
-            compared = Comparison(name, often, Turns(), n * decoders.POINTS, "point")
-            for combination in _combinations():
-                if compared.allows(", ".join(combination)):
-                    record, decode = measured(fiblets, truth, combination)
-                    record.data, record.group = name, group
-                    compared.add(record, decode=decode)
-            yield from compared.finish()
-
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every set and variant."""
+    n = QUICK_FIBLETS if options.quick else FIBLETS
+    steps, caps = (QUICK_STEPS, QUICK_CAPS) if options.quick else (STEPS, CAPS)
+    sets = [("steps", step, USUAL_CAP) for step in steps] + [("caps", USUAL_STEP, cap) for cap in caps]
+    for group, step, cap in sets:
+        name = f"steps of {step:g} mm, cap angle {CAP_DEGREES[cap]:g}°"
+        fiblets = made(n, cap, step, options.seed)
+        truth = exact(fiblets)
+        often = replace(options, repeats=REPEATS * options.repeats)
+        compared = Comparison(name, often, Turns(), n * decoders.POINTS, "point")
+        for combination in _combinations():
+            if compared.allows(", ".join(combination)):
+                record, decode = measured(fiblets, truth, combination)
+                record.data, record.group = name, group
+                compared.add(record, decode=decode)
+        yield from compared.finish()
 
 def _combinations() -> list[tuple[str, str, str, str]]:
     """Return order, number format, algebra and source of all variants, the codec's own first."""
@@ -173,4 +130,33 @@ def measured(
     return record, run
 
 
-STUDY = DecodeStudy()
+STUDY = Study(
+    name="decode",
+    title="Decoding of fiblets",
+    approximates=(
+        "Points that codes stand for, by finite numbers: sequential or parallel prefix, float32 or float64, rotations "
+        "as quaternions or matrices, from a table or by its closed form."
+    ),
+    axes=(
+        Axes("max", "times/decode", "errors/max in steps", "ns per point", "largest error, steps"),
+        Axes("mean", "times/decode", "errors/mean in steps", "ns per point", "mean error, steps"),
+        Axes("drift", "", "errors/mean at point ", "point of the fiblet", "mean error, steps", series=True),
+    ),
+    notes=(
+        "Fiblets of 60 points with random first directions and codes, their anchors up to 100 mm from the middle along "
+        "each axis: rounding coordinates of that size alone costs float32 up to 7 nm at every addition. Errors are "
+        "distances from the same products in NumPy's longest number format. The codec's own variants: "
+        "sequential, quaternions, table, in float32 on graphics cards and in float64 on the CPU; prefix, quaternions, "
+        "table, float32 where a work group decodes a fiblet together.",
+        "*closed form*: the formula that the table was made by, without the table's rounding to 16-bit integers, so "
+        "that it is another direction by up to that; *rounded*: with it, where float32 may still fall on the other "
+        "side. The table's quaternions are float32, so of unit length within 1e-7 only. What they mean is their "
+        "product as the sequential decoder takes it; matrices, the prefix network and the closed form take them in "
+        "another order, or as exact rotations, which is all that float64 shows of these: no digits are lost, and it is "
+        "far below any promise.",
+        "Times are of one thread of the CPU, all variants compiled alike. The prefix network does "
+        "more work (six passes of up to 32 products) so that 32 threads of a graphics card can share it: its time here "
+        "is that of the work alone.",
+    ),
+    run=run,
+)

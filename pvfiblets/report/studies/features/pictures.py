@@ -26,7 +26,7 @@ DEEPEST = 4294967295.0  # of depth keys
 
 def lens_of(camera: Camera) -> Projection:
     """Return what effects must know of a camera."""
-    return Projection(camera.size, camera.model_view_projection @ np.linalg.inv(camera.world_to_camera))
+    return Projection(camera.size, camera.camera_to_clip)
 
 
 @dataclass(frozen=True)

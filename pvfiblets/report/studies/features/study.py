@@ -13,7 +13,7 @@ from pvfiblets.engine.errors import EngineError
 
 from ...drawing import drawing_context
 from ...record import Axes, Figure, Record
-from ...study import Options
+from ...study import Options, Study
 from ...timing import Comparison, turns_of
 from .scenes import PLAIN, Drawn, Subject
 from .subjects import brain_subject, halo_subject, tube_subject, volume_subject
@@ -29,50 +29,22 @@ if TYPE_CHECKING:
 
 SEGMENTS, QUICK_SEGMENTS = 2_000_000, 150_000  # of a synthetic brain
 STEP = 0.5  # mm
-LENGTH = 94.0  # mm of a synthetic streamline on average
 TUBES, QUICK_TUBES = 400, 60  # streamlines that are drawn as spline tubes, and with halos
 VOXELS, QUICK_VOXELS = 96, 40  # along a side of a synthetic volume
 SIZE, QUICK_SIZE = (1024, 768), (480, 360)
 FRAMES, QUICK_FRAMES = 3, 2
 
 
-class FeatureStudy:
-    """Every feature alone, beside the same scene with none."""
-
-    name = "features"
-    title = "What features cost"
-    approximates = (
-        "No approximation: what each feature adds to a plain scene, in bytes on the GPU and in milliseconds a frame. A "
-        "feature that is off is not there: no code, no buffer, no pass."
-    )
-    axes = (Axes("cost", "times/draw", "costs/memory", "ms per frame", "memory on the GPU, MB", alternatives=False),)
-    notes = (
-        "Plain streamlines are thin, coloured by direction, culled in two phases; plain spline tubes and lines with "
-        "halos have one colour, the latter straight halos of one width; the plain volume shows greatest values. "
-        "Each feature alone is added to that. *memory*: all buffers and textures on the GPU, those of the picture "
-        "included; *more memory*, *more time*: beside the plain scene; negative numbers are a gain, as of features "
-        "that leave less to draw. The camera turns 1.14° a frame, and the frames of all features take turns.",
-        "Pictures are of the engine without VTK, each waited for. Where OpenGL is software, times are the processor "
-        "time of all its threads; on a graphics card they are elapsed. Measurements and compilation that happen once, "
-        "when a feature is set, are not included.",
-        "Effects on a whole *picture* receive the scene's depths and synthetic colours of one sample a pixel in place "
-        "of VTK's picture; that input is not counted, the memory of the effects is.",
-        "*in a window*: the same streamlines in a PyVista window, all of VTK's work included, with colours, depth "
-        "cueing and illuminated lines, which VTK's shader writes. Frames with and without a feature take turns. "
-        "*change*: the feature is set anew and drawn at once, which is what dragging costs.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every subject and feature."""
-        with drawing_context(options) as ctx:
-            for make in subjects(options):
-                subject = make()
-                yield from _measured(ctx, subject, options)
-        try:
-            yield from in_window(partial(brain, options), QUICK_SIZE if options.quick else SIZE, options)
-        except ImportError as error:
-            options.leave_out("streamlines in a window", f"{error.name} is not installed")
-
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every subject and feature."""
+    with drawing_context(options) as ctx:
+        for make in subjects(options):
+            subject = make()
+            yield from _measured(ctx, subject, options)
+    try:
+        yield from in_window(partial(brain, options), QUICK_SIZE if options.quick else SIZE, options)
+    except ImportError as error:
+        options.leave_out("streamlines in a window", f"{error.name} is not installed")
 
 def _measured(ctx: moderngl.Context, subject: Subject, options: Options) -> Iterator[Record]:
     size, frames = (QUICK_SIZE, QUICK_FRAMES) if options.quick else (SIZE, FRAMES)
@@ -119,10 +91,10 @@ def _costs(nbytes: int, plain_nbytes: int, timing: Timing, plain: Timing) -> dic
 def brain(options: Options) -> FibletSet:
     """Make fiblets of a synthetic brain, with a per-point array ``'height'``."""
     from pvfiblets.report.studies.codec.coded import compress
-    from pvfiblets.synthetic import brain_streamlines
+    from pvfiblets.synthetic import brain_streamlines, streamline_count
 
     segments = QUICK_SEGMENTS if options.quick else SEGMENTS
-    made = brain_streamlines(max(round(segments * STEP / LENGTH), 1), step=STEP, seed=options.seed)
+    made = brain_streamlines(streamline_count(segments, STEP), step=STEP, seed=options.seed)
     made.per_point = {"height": made.points[:, 2].copy()}
     return compress(made, per_point=("height",))
 
@@ -161,4 +133,28 @@ def subjects(options: Options) -> list[Callable[[], Subject]]:
     return [lambda: brain_subject(brain(options)), tubes, halos, volume]
 
 
-STUDY = FeatureStudy()
+STUDY = Study(
+    name="features",
+    title="What features cost",
+    approximates=(
+        "No approximation: what each feature adds to a plain scene, in bytes on the GPU and in milliseconds a frame. A "
+        "feature that is off is not there: no code, no buffer, no pass."
+    ),
+    axes=(Axes("cost", "times/draw", "costs/memory", "ms per frame", "memory on the GPU, MB", alternatives=False),),
+    notes=(
+        "Plain streamlines are thin, coloured by direction, culled in two phases; plain spline tubes and lines with "
+        "halos have one colour, the latter straight halos of one width; the plain volume shows greatest values. "
+        "Each feature alone is added to that. *memory*: all buffers and textures on the GPU, those of the picture "
+        "included; *more memory*, *more time*: beside the plain scene; negative numbers are a gain, as of features "
+        "that leave less to draw. The camera turns 1.14° a frame, and the frames of all features take turns.",
+        "Pictures are of the engine without VTK, each waited for. Where OpenGL is software, times are the processor "
+        "time of all its threads; on a graphics card they are elapsed. Measurements and compilation that happen once, "
+        "when a feature is set, are not included.",
+        "Effects on a whole *picture* receive the scene's depths and synthetic colours of one sample a pixel in place "
+        "of VTK's picture; that input is not counted, the memory of the effects is.",
+        "*in a window*: the same streamlines in a PyVista window, all of VTK's work included, with colours, depth "
+        "cueing and illuminated lines, which VTK's shader writes. Frames with and without a feature take turns. "
+        "*change*: the feature is set anew and drawn at once, which is what dragging costs.",
+    ),
+    run=run,
+)

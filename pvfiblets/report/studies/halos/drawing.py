@@ -86,7 +86,7 @@ class FibletHalos:
         """Draw."""
         view = _view(camera, self._times)
         buffer = self._renderer.render(view, FibletStyle(radius=0.5 * look.line_width))
-        lens = Projection(view.size, camera.model_view_projection @ np.linalg.inv(camera.world_to_camera))
+        lens = Projection(view.size, camera.camera_to_clip)
         width = 0.5 * (look.strip_width - look.line_width)
         return buffer, self._halos.draw(buffer, lens, width=width, depth=look.max_displacement, nearest=camera.near)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -16,7 +15,7 @@ from pvfiblets.engine.halos import HaloDrawStyle
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.spacing import default_widths
 
-from ...cameras import ELEVATION, VERTICAL_ANGLE, Camera
+from ...cameras import SLANT, Camera, circling
 
 if TYPE_CHECKING:
     from pvfiblets.engine.gbuffer import GBuffer
@@ -71,22 +70,16 @@ def orbit(
     points = drawn.points[:: max(1, drawn.n_points // 50_000)]
     extreme = np.concatenate([drawn.points.argmin(axis=0), drawn.points.argmax(axis=0)])
     points = np.concatenate([points, drawn.points[extreme]]).astype(np.float64) - centre
-    narrow = math.tan(math.radians(VERTICAL_ANGLE / 2)) * np.array([size[0] / size[1], 1.0])
-    up = math.radians(ELEVATION)
-    rotations = []
-    for place in range(places):
-        for frame in range(-1, frames):
-            turn = 0.3 + 2.0 * math.pi * place / places + math.radians(degrees * frame)
-            back = np.array([math.cos(up) * math.cos(turn), math.cos(up) * math.sin(turn), math.sin(up)])
-            right = np.array([-math.sin(turn), math.cos(turn), 0.0])
-            rotations.append(np.stack([right, np.cross(back, right), back]))
-    seen = [points @ rotation.T for rotation in rotations]
+    narrow = SLANT * np.array([size[0] / size[1], 1.0])
+    starts = 0.3 + 2.0 * np.pi * np.arange(places)[:, None] / places
+    turns = (starts + np.radians(degrees * np.arange(-1, frames))).ravel()
+    seen = [points @ camera.axes.T for camera in circling(np.zeros(3), 1.0, turns, size, 0.5, 2.0)]
     radius = float(np.linalg.norm(points, axis=1).max())
     # A point is in the picture where the eye is at least so far from the centre.
     distance = 1.01 * max(float((p[:, 2] + (abs(p[:, :2]) / narrow).max(axis=1)).max()) for p in seen)
     nearest = distance - max(float(p[:, 2].max()) for p in seen)
     near, far = max(nearest - 0.05 * radius, 1e-3 * radius), distance + 1.05 * radius
-    cameras = [Camera((size[0], size[1]), centre + distance * rotation[2], centre, near, far) for rotation in rotations]
+    cameras = circling(centre, distance, turns, size, near, far)
     return [cameras[i : i + frames + 1] for i in range(0, len(cameras), frames + 1)]
 
 

@@ -16,7 +16,7 @@ from pvfiblets.halos.style import TABLE_SIZE
 
 from ...drawing import run_parts
 from ...record import FRAME, Axes, Figure, Record
-from ...study import Options
+from ...study import Options, Study
 from ...timing import Comparison, clock_of, timing, turns_of
 from ..codec.data_sets import DataSet, file_sets, synthetic_tracking
 from ..culling.flights import Flight
@@ -100,51 +100,9 @@ class Scene:
     tractogram: DataSet | None = None
 
 
-class HaloStudy:
-    """Halos of lines and points, drawn as strips and as an effect on finished pictures."""
-
-    name = "halos"
-    title = "Depth-dependent halos"
-    approximates = (
-        "Pictures of lines and points with halos, by finite samples: edges that are as jagged as pixels, or blended "
-        "over one; beside it, halos that finished pictures of fiblets are given, and a float64 reference of each pixel."
-    )
-    axes = (
-        Axes("mean", "times/draw", "errors/mean", "ms per frame", "mean difference of pixels, %"),
-        Axes("wrong", "times/draw", "errors/off by 1/4", "ms per frame", "pixels off by more than 1/4, %"),
-        Axes("kind", "times/draw", "errors/kind", "ms per frame", "line, halo or nothing mistaken, %"),
-        Axes("depth", "times/draw", "errors/depth", "ms per frame", "depth, 99th percentile, mm"),
-        Axes("gap", "times/draw", "errors/gap", "ms per frame", "width of a gap, mean error, px"),
-    )
-    notes = (
-        "Black lines and points in white halos. *mean*, *rms*, *p99*, *max*: differences of pixels from a picture of "
-        "64 samples a pixel, all black or white, in percent of the difference between both; *off by 1/4*: share of "
-        "pixels that are farther off. It is among the variants, with errors of 0 and the time of one drawing, "
-        "averages included; what *smooth edges* of 64 samples are off by is how far it may be off itself.",
-        "*smooth edges*: a line turns into its own halo over a pixel, the default; *black or white*: without. A line "
-        "that ends at another's halo ends at a pixel in both. *not culled*: as Everts et al. 2009 have it; culling "
-        "begins at 16,000 segments and changes no pixel. *halos of fiblets*: compressed streamlines, each a tube a "
-        "pixel wide at least, whose finished picture is given halos at each pixel; ends are round, and of what cannot "
-        "be seen there are none. On tractograms lines have the look that both have: no tapered ends, one width, "
-        "and halos that begin to go back at the line's edge.",
-        "*helices*: compared with the float64 reference of what each pixel shows, one sample a pixel, which is among "
-        "the variants with its time on the CPU. *kind*: pixels that show line, halo or nothing where it is another of "
-        "these, percent of all; *depth*: the 99th percentile, mm along the view axis, where both show the same kind. "
-        "*crossings*: lines in front of others that lie 1 to 9 mm behind; *gap*: how far the white on either side of "
-        "a crossing is from appendix A's width, pixels, mean and greatest.",
-        "The camera turns by 1.14° between frames. Pictures are of the engine without VTK, each waited for. Where "
-        "OpenGL is software, times are the processor time of all its threads; on a graphics card they are elapsed. "
-        "*memory*: the part that grows with the data. "
-        "*fibres-subset*, *office* and *shape-small* (points) are synthetic, of "
-        "sizes in the paper's table 1; tractograms are cut by leaving streamlines out evenly, which their names say.",
-        "*in a window*: all sets of the paper's table 1 in PyVista windows, seen from six places, beside VTK's plain "
-        "lines of one pixel, or plain points of the same size.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every scene and variant."""
-        return run_parts({_exact: 1.0, _gaps: 1.0, _all_pictures: 6.0}, options, {beside_plain: 2.0})
-
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every scene and variant."""
+    return run_parts({_exact: 1.0, _gaps: 1.0, _all_pictures: 6.0}, options, {beside_plain: 2.0})
 
 def _all_pictures(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     for scene in scenes(options):
@@ -319,4 +277,43 @@ def _moved(made: Crossings, pixels: float) -> Any:
     return matrix
 
 
-STUDY = HaloStudy()
+STUDY = Study(
+    name="halos",
+    title="Depth-dependent halos",
+    approximates=(
+        "Pictures of lines and points with halos, by finite samples: edges that are as jagged as pixels, or blended "
+        "over one; beside it, halos that finished pictures of fiblets are given, and a float64 reference of each pixel."
+    ),
+    axes=(
+        Axes("mean", "times/draw", "errors/mean", "ms per frame", "mean difference of pixels, %"),
+        Axes("wrong", "times/draw", "errors/off by 1/4", "ms per frame", "pixels off by more than 1/4, %"),
+        Axes("kind", "times/draw", "errors/kind", "ms per frame", "line, halo or nothing mistaken, %"),
+        Axes("depth", "times/draw", "errors/depth", "ms per frame", "depth, 99th percentile, mm"),
+        Axes("gap", "times/draw", "errors/gap", "ms per frame", "width of a gap, mean error, px"),
+    ),
+    notes=(
+        "Black lines and points in white halos. *mean*, *rms*, *p99*, *max*: differences of pixels from a picture of "
+        "64 samples a pixel, all black or white, in percent of the difference between both; *off by 1/4*: share of "
+        "pixels that are farther off. It is among the variants, with errors of 0 and the time of one drawing, "
+        "averages included; what *smooth edges* of 64 samples are off by is how far it may be off itself.",
+        "*smooth edges*: a line turns into its own halo over a pixel, the default; *black or white*: without. A line "
+        "that ends at another's halo ends at a pixel in both. *not culled*: as Everts et al. 2009 have it; culling "
+        "begins at 16,000 segments and changes no pixel. *halos of fiblets*: compressed streamlines, each a tube a "
+        "pixel wide at least, whose finished picture is given halos at each pixel; ends are round, and of what cannot "
+        "be seen there are none. On tractograms lines have the look that both have: no tapered ends, one width, "
+        "and halos that begin to go back at the line's edge.",
+        "*helices*: compared with the float64 reference of what each pixel shows, one sample a pixel, which is among "
+        "the variants with its time on the CPU. *kind*: pixels that show line, halo or nothing where it is another of "
+        "these, percent of all; *depth*: the 99th percentile, mm along the view axis, where both show the same kind. "
+        "*crossings*: lines in front of others that lie 1 to 9 mm behind; *gap*: how far the white on either side of "
+        "a crossing is from appendix A's width, pixels, mean and greatest.",
+        "The camera turns by 1.14° between frames. Pictures are of the engine without VTK, each waited for. Where "
+        "OpenGL is software, times are the processor time of all its threads; on a graphics card they are elapsed. "
+        "*memory*: the part that grows with the data. "
+        "*fibres-subset*, *office* and *shape-small* (points) are synthetic, of "
+        "sizes in the paper's table 1; tractograms are cut by leaving streamlines out evenly, which their names say.",
+        "*in a window*: all sets of the paper's table 1 in PyVista windows, seen from six places, beside VTK's plain "
+        "lines of one pixel, or plain points of the same size.",
+    ),
+    run=run,
+)

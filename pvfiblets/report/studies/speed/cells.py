@@ -38,29 +38,26 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
 DEGREES_PER_FRAME = 1.14  # Schertzer et al. 2022, section 4.5: 90 degrees a second at 80 frames
-PER_STREAMLINE = 94.0  # mm, on average, of pvfiblets.synthetic.brain
 TURN = 315  # frames of a whole turn, 1.14 degrees apart
 WARM = 2  # frames that do not count: the first compiles, the second still looks at the first
 
 
 def path_of_brain(segments: float, step: float, folder: str | Path) -> Path:
     """Return the file of a set of about so many segments."""
-    return Path(folder) / f"brain-{_streamlines(segments, step)}-{step:g}.fiblets"
+    from pvfiblets.synthetic import streamline_count
 
-
-def _streamlines(segments: float, step: float) -> int:
-    return max(1, round(segments * step / PER_STREAMLINE))
+    return Path(folder) / f"brain-{streamline_count(segments, step)}-{step:g}.fiblets"
 
 
 def stored_brain(segments: float, step: float, folder: str | Path) -> FibletSet:
     """Return a set of about so many segments, from a file in a folder if it is there already."""
     from pvfiblets import FibletSet
-    from pvfiblets.synthetic import brain
+    from pvfiblets.synthetic import brain, streamline_count
 
     path = path_of_brain(segments, step, folder)
     if not path.exists():
         unfinished = path.with_suffix(".part")
-        brain(_streamlines(segments, step), step, path=unfinished, progress=sys.stderr.isatty())
+        brain(streamline_count(segments, step), step, path=unfinished, progress=sys.stderr.isatty())
         unfinished.rename(path)
     return FibletSet.open(path)
 

@@ -18,10 +18,10 @@ import numpy as np
 from ...drawing import data_bytes
 from ...process import CellProcess, Row, serve
 from ...record import FRAME, Axes, Figure, Record
-from ...study import Options, Unavailable
+from ...study import Options, Study, Unavailable
 from ...timing import timing
 from ...window import Window
-from .cells import DEGREES_PER_FRAME, PER_STREAMLINE, WARM
+from .cells import DEGREES_PER_FRAME, WARM
 from .study import FRAMES, LIMIT, QUICK_FRAMES, QUICK_SECONDS, by_size
 
 if TYPE_CHECKING:
@@ -36,63 +36,44 @@ POLYLINES, TUBES, FIBLETS = "VTK's polylines", "VTK's tubes", "fiblets"
 METHODS = ((FIBLETS, ""), (POLYLINES, ""), (POLYLINES, "without multi-sampling"), (TUBES, ""))
 
 
-class LinesStudy:
-    """A whole brain's lines in PyVista windows."""
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every size and method."""
+    from pvfiblets import formats
+    from pvfiblets.synthetic import brain_streamlines, streamline_count
 
-    name = "lines"
-    title = "Lines in a window"
-    approximates = "No approximation: frames, memory and time to load of lines, beside VTK's own."
-    axes = (
-        Axes("size", "", "errors/ms at M segments ", "million segments", "ms per frame", series=True),
-        Axes("memory", "times/draw", "costs/memory", "ms per frame", "bytes per point on the GPU"),
+    if find_spec("pyvista") is None:
+        raise Unavailable("pyvista is not installed")
+    size, frames, seconds = (
+        (QUICK_SIZE, QUICK_FRAMES, QUICK_SECONDS) if options.quick else (SIZE, FRAMES, SECONDS)
     )
-    notes = (
-        f"An orbit of {DEGREES_PER_FRAME}° a frame around a synthetic brain, steps of {STEP:g} mm, lit and coloured by "
-        "orientation, lines one pixel wide. A plotter multi-samples by default: that smooths VTK's lines and costs "
-        "them time, but not fiblets. *without multi-sampling* gives the same picture as fiblets. Each method draws in "
-        "a process of its own: *peak* is its resident memory, *load* the time from the .tck file to the first frame, "
-        "coding included.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every size and method."""
-        from pvfiblets import formats
-        from pvfiblets.synthetic import brain_streamlines
-
-        if find_spec("pyvista") is None:
-            raise Unavailable("pyvista is not installed")
-        size, frames, seconds = (
-            (QUICK_SIZE, QUICK_FRAMES, QUICK_SECONDS) if options.quick else (SIZE, FRAMES, SECONDS)
-        )
-        found = []
-        with tempfile.TemporaryDirectory() as folder:
-            for segments in QUICK_SEGMENTS if options.quick else SEGMENTS:
-                brain = brain_streamlines(max(1, round(segments * STEP / PER_STREAMLINE)), STEP, seed=options.seed)
-                path = Path(folder) / "brain.tck"
-                formats.write(path, brain)
-                exact = brain.n_points - len(brain)
-                del brain
-                data = f"{exact / 1e6:,.3g} M segments, {size[0]}×{size[1]}"
-                for method, setting in METHODS:
-                    what = ", ".join(part for part in (data, method, setting) if part)
-                    if method == TUBES and segments > MOST_OF_TUBES:
-                        continue
-                    if not options.allows(what):
-                        continue
-                    cell = {"method": method, "aliased": bool(setting), "path": str(path), "size": size,
-                            "frames": frames, "limit": seconds}  # fmt: skip
-                    process = CellProcess.for_module("pvfiblets.report.studies.speed.lines")
-                    row = process.measure(cell, LIMIT)
-                    process.close()
-                    if "unmeasured" in row:
-                        options.leave_out(what, row["unmeasured"])
-                        continue
-                    options.driver = row["driver"]
-                    options.log(f"lines: {what}")
-                    found.append(_record(data, method, setting, row))
-                    yield found[-1]
-        yield from by_size(found)
-
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        for segments in QUICK_SEGMENTS if options.quick else SEGMENTS:
+            brain = brain_streamlines(streamline_count(segments, STEP), STEP, seed=options.seed)
+            path = Path(folder) / "brain.tck"
+            formats.write(path, brain)
+            exact = brain.n_points - len(brain)
+            del brain
+            data = f"{exact / 1e6:,.3g} M segments, {size[0]}×{size[1]}"
+            for method, setting in METHODS:
+                what = ", ".join(part for part in (data, method, setting) if part)
+                if method == TUBES and segments > MOST_OF_TUBES:
+                    continue
+                if not options.allows(what):
+                    continue
+                cell = {"method": method, "aliased": bool(setting), "path": str(path), "size": size,
+                        "frames": frames, "limit": seconds}  # fmt: skip
+                process = CellProcess.for_module("pvfiblets.report.studies.speed.lines")
+                row = process.measure(cell, LIMIT)
+                process.close()
+                if "unmeasured" in row:
+                    options.leave_out(what, row["unmeasured"])
+                    continue
+                options.driver = row["driver"]
+                options.log(f"lines: {what}")
+                found.append(_record(data, method, setting, row))
+                yield found[-1]
+    yield from by_size(found)
 
 def _record(data: str, method: str, setting: str, row: Row) -> Record:
     return Record(
@@ -175,7 +156,23 @@ def _vertex_bytes(mesh: Any) -> int:
     return int(mesh.n_points * (12 + 4 + normals) + 4 * (2 * segments + 3 * triangles))
 
 
-STUDY = LinesStudy()
+STUDY = Study(
+    name="lines",
+    title="Lines in a window",
+    approximates="No approximation: frames, memory and time to load of lines, beside VTK's own.",
+    axes=(
+        Axes("size", "", "errors/ms at M segments ", "million segments", "ms per frame", series=True),
+        Axes("memory", "times/draw", "costs/memory", "ms per frame", "bytes per point on the GPU"),
+    ),
+    notes=(
+        f"An orbit of {DEGREES_PER_FRAME}° a frame around a synthetic brain, steps of {STEP:g} mm, lit and coloured by "
+        "orientation, lines one pixel wide. A plotter multi-samples by default: that smooths VTK's lines and costs "
+        "them time, but not fiblets. *without multi-sampling* gives the same picture as fiblets. Each method draws in "
+        "a process of its own: *peak* is its resident memory, *load* the time from the .tck file to the first frame, "
+        "coding included.",
+    ),
+    run=run,
+)
 
 if __name__ == "__main__":
     serve(measure_lines)

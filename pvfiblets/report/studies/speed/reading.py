@@ -12,7 +12,7 @@ from typing import Any
 from pvfiblets import formats
 
 from ...record import Axes, Figure, Record
-from ...study import Options
+from ...study import Options, Study
 from ...timing import Comparison, Turns
 
 STREAMLINES, QUICK_STREAMLINES = 80_000, 500  # of some 188 points
@@ -20,33 +20,20 @@ STEP = 0.5  # mm
 SUFFIXES = (".tck", ".trk", ".trx")
 
 
-class ReadingStudy:
-    """How fast tractogram files are read."""
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every format and reader."""
+    from pvfiblets.synthetic import brain_streamlines
 
-    name = "reading"
-    title = "Reading files"
-    approximates = "No approximation: points a second of reading files, beside nibabel."
-    axes = (Axes("read", "times/read", "costs/size", "ns per point", "bytes per point of the file"),)
-    notes = (
-        "A synthetic whole brain in each format; the page cache is warm, and readers take turns. *in pieces*: chunk by "
-        "chunk, of which nothing is kept. nibabel reads no .trx. Times are of the processor, all threads.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every format and reader."""
-        from pvfiblets.synthetic import brain_streamlines
-
-        count = QUICK_STREAMLINES if options.quick else STREAMLINES
-        whole = brain_streamlines(count, STEP, seed=options.seed)
-        with tempfile.TemporaryDirectory() as folder:
-            for suffix in SUFFIXES:
-                path = Path(folder) / f"brain{suffix}"
-                data = f"{suffix}, {whole.n_points / 1e6:.3g} M points"
-                if not options.allows(data):
-                    continue
-                formats.write(path, whole)
-                yield from _read(path, data, whole.n_points, options)
-
+    count = QUICK_STREAMLINES if options.quick else STREAMLINES
+    whole = brain_streamlines(count, STEP, seed=options.seed)
+    with tempfile.TemporaryDirectory() as folder:
+        for suffix in SUFFIXES:
+            path = Path(folder) / f"brain{suffix}"
+            data = f"{suffix}, {whole.n_points / 1e6:.3g} M points"
+            if not options.allows(data):
+                continue
+            formats.write(path, whole)
+            yield from _read(path, data, whole.n_points, options)
 
 def _read(path: Path, data: str, points: int, options: Options) -> Iterator[Record]:
     readers: dict[tuple[str, str], Callable[[Path], Any]] = {
@@ -88,4 +75,14 @@ def _by_nibabel(path: Path) -> Any:
         return nibabel.streamlines.load(path).streamlines
 
 
-STUDY = ReadingStudy()
+STUDY = Study(
+    name="reading",
+    title="Reading files",
+    approximates="No approximation: points a second of reading files, beside nibabel.",
+    axes=(Axes("read", "times/read", "costs/size", "ns per point", "bytes per point of the file"),),
+    notes=(
+        "A synthetic whole brain in each format; the page cache is warm, and readers take turns. *in pieces*: chunk by "
+        "chunk, of which nothing is kept. nibabel reads no .trx. Times are of the processor, all threads.",
+    ),
+    run=run,
+)

@@ -14,7 +14,7 @@ import numpy as np
 from ...drawing import drawing_context
 from ...process import CellProcess, Row
 from ...record import FRAME, Axes, Figure, Record
-from ...study import Options
+from ...study import Options, Study
 from ...timing import timing
 from .cells import stored_brain
 
@@ -38,55 +38,34 @@ HOPELESS = 3.0  # seconds a frame, beyond which a pipeline draws no larger set
 BRAINS = "PVFIBLETS_BRAINS"  # names a folder that keeps synthetic brains: 12 GB of them in a whole run
 
 
-class SpeedStudy:
-    """Every drawable on a bare context: what a graphics card is asked for."""
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every cell, the most important first."""
+    from pvfiblets.engine.gl import capabilities
 
-    name = "speed"
-    title = "Speed"
-    approximates = (
-        "No approximation: milliseconds and bytes of pipelines by the number of segments, beside line strips of the "
-        "same points; of features, spline tubes, halos and volumes. Neither VTK nor a display is needed."
-    )
-    axes = (Axes("size", "", "errors/ms at M segments ", "million segments", "ms per frame", series=True),)
-    notes = (
-        "A slow flight, 1.14° a frame, around synthetic brains of steps of 0.1 mm, each frame waited for; one process "
-        "draws cell after cell, and a driver that dies costs one cell. Where OpenGL is software, times are of the "
-        "processor, all threads; those of cards are by the clock. *first*: the first frame, which compiles programs. "
-        "Brackets: least and greatest frame.",
-        "Schertzer et al. 2022: table 2 (pipelines and culling; its mesh pipeline takes 33.9 ms for 5.4 billion "
-        "segments on an RTX 2080 Ti), table 3 (*line strips*: 16 bytes a point), section 5 (features). Russig et al. "
-        "2020: the sets of spline tubes. Everts et al. 2009: those of halos.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every cell, the most important first."""
-        from pvfiblets.engine.gl import capabilities
-
-        with drawing_context(options) as ctx:
-            known = capabilities.pipelines(ctx)
-            fastest = capabilities.choose(ctx, "auto")
-        for info in known:
-            if not info.available:
-                options.leave_out(f"pipeline {info.name}", info.why_not)
-        pipelines = sorted((info.name for info in known if info.available), key=lambda name: name != fastest)
-        with ExitStack() as stack:
-            folder = os.environ.get(BRAINS) or stack.enter_context(tempfile.TemporaryDirectory())
-            process = CellProcess.for_module("pvfiblets.report.studies.speed.cells")
-            stack.callback(process.close)
-            hopeless: set[tuple[Any, ...]] = set()
-            parts = sections(options.quick, pipelines)
-            for number, cells in enumerate(parts):
-                part = options.share(1.0 / (len(parts) - number))
-                found: list[Record] = []
-                for cell in cells:
-                    done = measured({**cell, "folder": folder}, process, hopeless, part)
-                    if done is not None:
-                        record, _ = done
-                        record.default = (cell.get("pipeline"), cell.get("culling")) == (fastest, CULLINGS[0])
-                        found.append(record)
-                        yield record
-                yield from by_size(found)
-
+    with drawing_context(options) as ctx:
+        known = capabilities.pipelines(ctx)
+        fastest = capabilities.choose(ctx, "auto")
+    for info in known:
+        if not info.available:
+            options.leave_out(f"pipeline {info.name}", info.why_not)
+    pipelines = sorted((info.name for info in known if info.available), key=lambda name: name != fastest)
+    with ExitStack() as stack:
+        folder = os.environ.get(BRAINS) or stack.enter_context(tempfile.TemporaryDirectory())
+        process = CellProcess.for_module("pvfiblets.report.studies.speed.cells")
+        stack.callback(process.close)
+        hopeless: set[tuple[Any, ...]] = set()
+        parts = sections(options.quick, pipelines)
+        for number, cells in enumerate(parts):
+            part = options.share(1.0 / (len(parts) - number))
+            found: list[Record] = []
+            for cell in cells:
+                done = measured({**cell, "folder": folder}, process, hopeless, part)
+                if done is not None:
+                    record, _ = done
+                    record.default = (cell.get("pipeline"), cell.get("culling")) == (fastest, CULLINGS[0])
+                    found.append(record)
+                    yield record
+            yield from by_size(found)
 
 def sections(quick: bool, pipelines: list[str]) -> list[list[Row]]:
     """Return what is measured, the most important first; the first pipeline is the default."""
@@ -182,4 +161,22 @@ def by_size(records: list[Record]) -> Iterator[Record]:
             yield Record(f"by segments, {size}", "segments", "nothing", label, "", figures, ours=True)
 
 
-STUDY = SpeedStudy()
+STUDY = Study(
+    name="speed",
+    title="Speed",
+    approximates=(
+        "No approximation: milliseconds and bytes of pipelines by the number of segments, beside line strips of the "
+        "same points; of features, spline tubes, halos and volumes. Neither VTK nor a display is needed."
+    ),
+    axes=(Axes("size", "", "errors/ms at M segments ", "million segments", "ms per frame", series=True),),
+    notes=(
+        "A slow flight, 1.14° a frame, around synthetic brains of steps of 0.1 mm, each frame waited for; one process "
+        "draws cell after cell, and a driver that dies costs one cell. Where OpenGL is software, times are of the "
+        "processor, all threads; those of cards are by the clock. *first*: the first frame, which compiles programs. "
+        "Brackets: least and greatest frame.",
+        "Schertzer et al. 2022: table 2 (pipelines and culling; its mesh pipeline takes 33.9 ms for 5.4 billion "
+        "segments on an RTX 2080 Ti), table 3 (*line strips*: 16 bytes a point), section 5 (features). Russig et al. "
+        "2020: the sets of spline tubes. Everts et al. 2009: those of halos.",
+    ),
+    run=run,
+)

@@ -11,7 +11,7 @@ from pvfiblets.report.studies.codec.coded import compress
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst
-from .render_checks import EVERY_POINT, OFF_LINE, Array, camera, drawing, drawn, off_lines, read
+from .render_checks import EVERY_POINT, OFF_LINE, Array, camera, drawing, drawn, moved_camera, off_lines, read
 from .synthetic_lines import lines_of, tracking, zigzag
 
 __all__ = ["CASES"]
@@ -35,14 +35,6 @@ def compare(setting: Setting, streamlines: Streamlines, matrix: Array, size: tup
     lines = [np.asarray(line) for line in fiblets.decompress(dtype=np.float64).to_list()]
     off = off_lines(shown, lines, matrix, size) if shown.sound else np.inf
     return Outcome(off, OFF_LINE + SLACK, PIXELS, f"{int(shown.there.sum()):,} pixels drawn")
-
-
-def moved_camera(matrix: Array, scale: float, shift: float) -> Array:
-    """Return a camera that sees of data at ``scale * x + shift`` what another sees of x."""
-    back = np.eye(4)
-    back[:3, :3] /= scale
-    back[:3, 3] = -shift / scale
-    return matrix @ back
 
 
 @CASES.add("offsets of ±1e7 mm", "tracking, camera and all, moved by 1e7 mm either way", ON_LINES)

@@ -16,7 +16,7 @@ from .case import Cases, Outcome, Setting, refused, worst
 from .codec_cases import EFFORTS
 from .decode_cases import stiff
 from .render_checks import Array, camera, drawn, pixel_rays
-from .synthetic_lines import lines_of, tracking, zigzag
+from .synthetic_lines import from_segments, lines_of, tracking, zigzag
 
 CASES = Cases("capsules and tubes of lines")
 SIZE = (48, 36)
@@ -42,19 +42,9 @@ def _capsules(_: Setting) -> Outcome:
                 tip = own[0] + vectors[ranks[f]] if ends[f] else points[starts[f + 1]]
                 radius = float(fiblets.reach[f]) * fiblets.parameters.reach_scale
                 slack = 16.0 * float(np.spacing(np.abs(own).max() + np.abs(fiblets.origin).max()))
-                farthest = float(_from_segment(own, own[0], tip).max())
+                farthest = float(from_segments(own, own[0], tip).max())
                 found.append(Outcome(farthest / (radius + slack), 1.0, "of the radius", name))
     return worst(found)
-
-
-def _from_segment(points: Array, a: Array, b: Array) -> Array:
-    """Distances of points from a segment; denormal squares are avoided by scaling."""
-    scale = float(max(np.abs(points - a).max(), np.abs(b - a).max())) or 1.0
-    p, chord = (points - a) / scale, (b - a) / scale
-    squares = float(chord @ chord)
-    t = np.clip(p @ chord / squares, 0.0, 1.0) if squares > 0.0 else np.zeros(len(p))
-    found: Array = scale * np.linalg.norm(p - t[:, None] * chord, axis=1)
-    return found
 
 
 def _entries(lines: list[npt.NDArray[Any]], radius: float, o: Array, d: Array) -> Array:

@@ -13,7 +13,7 @@ from pvfiblets.report.studies.codec.coded import compress
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst
-from .synthetic_lines import differences, helix, lines_of, tracking, turning, zigzag
+from .synthetic_lines import differences, from_segments, helix, lines_of, tracking, turning, zigzag
 
 CASES = Cases("codec")
 WITHIN = "every decoded point within the promise of its original; counts as they were"
@@ -241,16 +241,6 @@ def _resampled(_: Setting) -> Outcome:
             ends = differences(before[[0, -1]], after[[0, -1]]).max()
             a, b = before[:-1], before[1:]
             some = after[:: max(len(after) // 400, 1)]
-            off = _from_segments(some, a, b) if len(a) else np.zeros(1)
+            off = from_segments(some, a, b) if len(a) else np.zeros(1)
             found.append(Outcome(float(max(ends, off.max())), 1e-9, "mm"))
     return worst(found)
-
-
-def _from_segments(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Distances of points from the nearest of some segments."""
-    chord = b - a
-    squares = (chord**2).sum(axis=1)
-    along = ((points[:, None] - a) * chord).sum(axis=2) / np.where(squares > 0.0, squares, 1.0)
-    away = points[:, None] - a - np.clip(along, 0.0, 1.0)[..., None] * chord
-    nearest: np.ndarray = np.linalg.norm(away, axis=2).min(axis=1)
-    return nearest

@@ -9,10 +9,11 @@ import numpy as np
 from pvfiblets.engine import View
 from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
-from pvfiblets.report.studies.halos.reference import LINE, NOTHING, picture
 
+from ..halos.exact import kinds
+from ..halos.reference import NOTHING, picture
 from .case import Cases, Outcome, Setting, refused, worst
-from .render_checks import EMPTY, Array, camera
+from .render_checks import Array, camera, moved_camera
 
 CASES = Cases("halos", draws=True)
 SIZE = (96, 72)
@@ -44,13 +45,7 @@ def _kinds(setting: Setting, drawn: HaloLines | HaloPoints, view: View, look: Ha
     """Return what each pixel shows, nothing, line or halo, and its window depth."""
     renderer = HaloRenderer(setting.gl, drawn)
     try:
-        buffer = renderer.render(view, HaloDrawStyle(look=look))
-        key, owner = (
-            np.frombuffer(texture.read(), "<u4").reshape(view.size[::-1]) for texture in (buffer.depth, buffer.owner)
-        )
-        there = key != EMPTY
-        kind = np.where(there, np.where(owner != EMPTY, LINE, LINE + 1), NOTHING)
-        return kind, np.where(there, key / 4294967296.0, 1.0)
+        return kinds(renderer.render(view, HaloDrawStyle(look=look)))
     finally:
         renderer.release()
 
@@ -134,9 +129,8 @@ def _wide(setting: Setting) -> Outcome:
 def _far_away(setting: Setting) -> Outcome:
     base, matrix, found = _wandering(), camera(SIZE, eye=EYE, near=10.0, far=200.0), []
     for shift in (1e7, -1e7):
-        back = np.eye(4)
-        back[:3, 3] = -shift
-        found.append(_compare(setting, HaloLines(base.points + shift, base.offsets), matrix @ back))
+        moved = HaloLines(base.points + shift, base.offsets)
+        found.append(_compare(setting, moved, moved_camera(matrix, 1.0, shift)))
     return worst(found)
 
 
@@ -144,9 +138,9 @@ def _far_away(setting: Setting) -> Outcome:
 def _sizes(setting: Setting) -> Outcome:
     base, matrix, found = _wandering(), camera(SIZE, eye=EYE, near=10.0, far=200.0), []
     for size in (1e-6, 1e6):
-        back = np.diag([1 / size, 1 / size, 1 / size, 1.0])
         look = HaloStyle(2.0 * size, 7.0 * size, 2.5 * size, n_tapered=0, min_width=0.0)
-        found.append(_compare(setting, HaloLines(base.points * size, base.offsets), matrix @ back, look=look))
+        scaled = HaloLines(base.points * size, base.offsets)
+        found.append(_compare(setting, scaled, moved_camera(matrix, size, 0.0), look=look))
     return worst(found)
 
 

@@ -12,7 +12,7 @@ from pvfiblets.report.studies.codec.coded import compress
 from pvfiblets.streamlines import Streamlines
 
 from .case import Cases, Outcome, Setting, refused, worst
-from .render_checks import Array, camera, drawn, samples
+from .render_checks import Array, camera, drawn, moved_camera, samples
 from .synthetic_lines import lines_of, tracking, zigzag
 
 CASES = Cases("picking and regions")
@@ -52,9 +52,8 @@ def _same(streamlines: Streamlines, matrix: Array, box: Array = BOX, edge: float
 def _places(_: Setting) -> Outcome:
     base, matrix, found = tracking(200, 60), camera(SIZE), []
     for scale, shift in ((1.0, 1e7), (1.0, -1e7), (1e-6, 0.0), (1e6, 0.0)):
-        back = np.diag([1.0 / scale] * 3 + [1.0])
-        back[:3, 3] = -shift / scale
-        found.append(_same(Streamlines(base.points * scale + shift, base.offsets), matrix @ back))
+        moved = Streamlines(base.points * scale + shift, base.offsets)
+        found.append(_same(moved, moved_camera(matrix, scale, shift)))
     return worst(found)
 
 

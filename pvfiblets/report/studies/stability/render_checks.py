@@ -16,6 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
+from pvfiblets.engine.gbuffer import EMPTY
+
+from ..card.lines import part_in_view
 
 if TYPE_CHECKING:
     import moderngl
@@ -24,7 +27,6 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 
-EMPTY = 0xFFFFFFFF
 OFF_LINE = 5.0**0.5 / 2.0 + 2.0**0.5 * 23.0 / 256.0
 EVERY_POINT = FibletStyle(tolerance=0.0)
 SAMPLES = 8  # places on a line for each pixel it crosses
@@ -62,6 +64,14 @@ def camera(
         projection[2, 2:] = -2.0 / (far - near), -(far + near) / (far - near)
         projection[3, 3] = 1.0
     return projection @ view
+
+
+def moved_camera(matrix: Array, scale: float, shift: float) -> Array:
+    """Return a camera that sees of data at ``scale * x + shift`` what another sees of x."""
+    back = np.eye(4)
+    back[:3, :3] /= scale
+    back[:3, 3] = -shift / scale
+    return matrix @ back
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,8 +142,7 @@ def samples(lines: Sequence[npt.NDArray[Any]], matrix: Array, size: tuple[int, i
     for line in lines:
         clip = np.column_stack([line, np.ones(len(line))]) @ matrix.T
         a, b = (clip, clip) if len(clip) == 1 else (clip[:-1], clip[1:])
-        for p, q in zip(a, b, strict=True):
-            low, high = _inside(p, q)
+        for p, q, low, high in zip(a, b, *part_in_view(a, b), strict=True):
             if low > high:
                 continue
             ends = np.array([p + low * (q - p), p + high * (q - p)])
@@ -143,21 +152,6 @@ def samples(lines: Sequence[npt.NDArray[Any]], matrix: Array, size: tuple[int, i
             steps = int(np.abs(window[1] - window[0]).max() * SAMPLES) + 2
             rows.append(window[0] + np.linspace(0.0, 1.0, steps)[:, None] * (window[1] - window[0]))
     return np.concatenate(rows)
-
-
-def _inside(p: Array, q: Array) -> tuple[float, float]:
-    """Part of a segment, in clip coordinates, that is in the view volume; the first is greater where there is none."""
-    low, high = 0.0, 1.0
-    for axis in range(3):
-        for sign in (-1.0, 1.0):
-            a, b = p[3] + sign * p[axis], q[3] + sign * q[axis]
-            if a < 0.0 and b < 0.0:
-                return 1.0, 0.0
-            if a < 0.0:
-                low = max(low, a / (a - b))
-            elif b < 0.0:
-                high = min(high, a / (a - b))
-    return low, high
 
 
 def off_lines(shown: Picture, lines: Sequence[npt.NDArray[Any]], matrix: Array, size: tuple[int, int]) -> float:

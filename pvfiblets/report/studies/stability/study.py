@@ -11,8 +11,8 @@ from contextlib import ExitStack
 from typing import Any
 
 from ...drawing import drawing_context
-from ...record import Axes, CaseResult, Figure, Record
-from ...study import Options, Unavailable
+from ...record import CaseResult, Figure, Record
+from ...study import Options, Study, Unavailable
 from . import all_cases
 from .case import Case, Setting
 
@@ -46,46 +46,44 @@ def in_turn(cases: Sequence[Case]) -> list[Case]:
     return [cases[i] for i in sorted(range(len(cases)), key=order.__getitem__)]
 
 
-class StabilityStudy:
-    """All extreme cases."""
+def run(options: Options) -> Iterator[Record | CaseResult]:
+    """Yield a result for every case."""
+    late: Counter[str] = Counter()
+    count, broken = 0, 0
+    with ExitStack() as stack:
+        ctx: Any = None
+        try:
+            ctx = stack.enter_context(drawing_context(options))
+        except Unavailable as error:
+            options.leave_out("all cases that draw", str(error))
+        for case in in_turn(all_cases()):
+            if case.draws and ctx is None:
+                continue
+            if not (options.budget.allows() if case.long else options.budget.left > 0.0):
+                late[case.system] += 1
+                continue
+            found = result_of(case, Setting(not options.quick, ctx))
+            count, broken = count + 1, broken + (not found.held)
+            if not found.held:
+                options.log(f"stability: {case.system}: {case.name}: does not hold ({found.note})")
+            yield found
+    for system, number in late.items():
+        options.leave_out(f"{system}: {number} cases", "the time given was used up")
+    options.log(f"stability: {count - broken} of {count} cases hold")
 
-    name = "stability"
-    title = "Stiff and extreme cases"
-    approximates = (
+
+STUDY = Study(
+    name="stability",
+    title="Stiff and extreme cases",
+    approximates=(
         "Conditions on any data, camera or file: each case states one, and judges a measured figure "
         "by an error bound, a formula, or NumPy in float64."
-    )
-    axes: Sequence[Axes] = ()
-    notes = (
+    ),
+    axes=(),
+    notes=(
         "A figure of *calls not refused* counts wrong input that did not end in the error it must end in; the last "
         "column then has the error's text. Tests run the same cases. The largest are smaller there, and in a quick "
         "report, as they say.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record | CaseResult]:
-        """Yield a result for every case."""
-        late: Counter[str] = Counter()
-        count, broken = 0, 0
-        with ExitStack() as stack:
-            ctx: Any = None
-            try:
-                ctx = stack.enter_context(drawing_context(options))
-            except Unavailable as error:
-                options.leave_out("all cases that draw", str(error))
-            for case in in_turn(all_cases()):
-                if case.draws and ctx is None:
-                    continue
-                if not (options.budget.allows() if case.long else options.budget.left > 0.0):
-                    late[case.system] += 1
-                    continue
-                found = result_of(case, Setting(not options.quick, ctx))
-                count, broken = count + 1, broken + (not found.held)
-                if not found.held:
-                    options.log(f"stability: {case.system}: {case.name}: does not hold ({found.note})")
-                yield found
-        for system, number in late.items():
-            options.leave_out(f"{system}: {number} cases", "the time given was used up")
-        options.log(f"stability: {count - broken} of {count} cases hold")
-
-
-STUDY = StabilityStudy()
+    ),
+    run=run,
+)

@@ -58,6 +58,17 @@ def helix(points: int = 500, turn: float = np.pi - 1e-3, pitch: float = 0.01, ra
     return np.stack([radius * np.cos(turn * i), radius * np.sin(turn * i), pitch * i], axis=1)
 
 
+def from_segments(points: npt.ArrayLike, a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
+    """Distances of points from the nearest of some segments, right for denormal lengths too."""
+    p, a, b = (np.asarray(x, np.float64).reshape(-1, 3) for x in (points, a, b))
+    scale = float(max(np.abs(p[:, None] - a).max(initial=0.0), np.abs(b - a).max(initial=0.0))) or 1.0
+    away, chord = (p[:, None] - a) / scale, (b - a) / scale
+    squares = (chord**2).sum(axis=1)
+    along = (away * chord).sum(axis=2) / np.where(squares > 0.0, squares, 1.0)
+    found: Array = scale * np.linalg.norm(away - np.clip(along, 0.0, 1.0)[..., None] * chord, axis=2).min(axis=1)
+    return found
+
+
 def differences(a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
     """Distances of points one by one, right for denormal and for huge ones too."""
     delta = np.abs(np.asarray(a, np.float64) - np.asarray(b, np.float64))

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.engine import View
+from pvfiblets.engine.gbuffer import EMPTY
 from pvfiblets.engine.tubes.options import TubeStyle
 from pvfiblets.engine.tubes.renderer import TubeRenderer
 from pvfiblets.report.studies.tubes import reference
@@ -15,8 +16,9 @@ from pvfiblets.report.studies.tubes.solver_probe import SolverProbe
 from pvfiblets.tubes.curves import controls, sample_spheres
 from pvfiblets.tubes.spline_tubes import SplineTubes
 
+from ...cameras import unit
 from .case import Cases, Outcome, Setting, refused, worst
-from .render_checks import EMPTY, Array, camera, pixel_rays
+from .render_checks import Array, camera, moved_camera, pixel_rays
 
 __all__ = ["CASES"]
 
@@ -27,12 +29,6 @@ LINE = [[-1.0, 0, 0], [0, 0, 0], [1, 0, 0]]
 MET = "hits within a thousandth of the size of the float64 hits, for 99 % of the rays that do not graze"
 SHARE = "of the rays are off"
 SHOWN = "all pixels but 2 in 1,000 as in float64, where a fiftieth of the radius does not decide"
-
-
-def unit(vectors: Array) -> Array:
-    """Vectors at length 1."""
-    found: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return found
 
 
 def size_of(half: Array) -> float:
@@ -187,19 +183,16 @@ def compare(setting: Setting, tubes: SplineTubes, matrix: Array, size: tuple[int
 
 @CASES.add("offsets of ±1e7 mm", "a tube and its camera moved by 1e7 mm either way", SHOWN)
 def _far_away(setting: Setting) -> Outcome:
-    found, matrix = [], camera(SIZE, eye=(0.0, -60.0, 20.0), near=5.0, far=200.0)
-    for shift in (1e7, -1e7):
-        back = np.eye(4)
-        back[:3, 3] = -shift
-        found.append(compare(setting, winding(shift=shift), matrix @ back))
-    return worst(found)
+    matrix = camera(SIZE, eye=(0.0, -60.0, 20.0), near=5.0, far=200.0)
+    shifts = (1e7, -1e7)
+    return worst([compare(setting, winding(shift=s), moved_camera(matrix, 1.0, s)) for s in shifts])
 
 
 @CASES.add("sizes of 1e-6 and 1e6", "a tube and its camera scaled by a millionth and by a million", SHOWN)
 def _sizes(setting: Setting) -> Outcome:
     matrix = camera(SIZE, eye=(0.0, -60.0, 20.0), near=5.0, far=200.0)
     sizes = (1e-6, 1e6)
-    return worst([compare(setting, winding(s), matrix @ np.diag([1 / s, 1 / s, 1 / s, 1.0])) for s in sizes])
+    return worst([compare(setting, winding(s), moved_camera(matrix, s, 0.0)) for s in sizes])
 
 
 @CASES.add("near plane at a millionth of the far", "near 0.001 mm, far 1000 mm", SHOWN)

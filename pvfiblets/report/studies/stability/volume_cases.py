@@ -8,45 +8,30 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.engine import View
+from pvfiblets.engine.gbuffer import EMPTY
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
-from pvfiblets.report.studies.volumes import reference
-from pvfiblets.report.studies.volumes.reference_rays import rays
 from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import RaycastVolume
 
+from ..volumes import reference
+from ..volumes.fields import DENSE, field, tables
+from ..volumes.pictures import light_of
+from ..volumes.reference_rays import rays
 from .case import Cases, Outcome, Setting, refused, worst
-from .render_checks import EMPTY, Array, camera
+from .render_checks import Array, camera
 
 __all__ = ["CASES"]
 
 CASES = Cases("volumes", draws=True)
 SIZE = (48, 36)
 STEP = 0.5  # voxels
-DENSE = 0.9  # opacity of a unit where tables are densest
-X, ENTRY = np.linspace(0.0, 1.0, 256), np.arange(256)
-ORANGE, BLUE = np.array([1.0, 0.6, 0.1]), np.array([0.1, 0.3, 1.0])
 HUNDREDTH = 1e-2  # what 'adaptive' keeps to by default, 8 bits of colour and opacity included
 LIGHT = "of full light"
 DEPTH = "voxels"
 ON_SURFACE = "surfaces within 0.02 voxels of those in float64, wherever a ray is surely on one"
 AS_DEEP = "surfaces where they are in float64, as deep as 24 bits of depth can tell"
 NEAR = 0.02
-
-
-def table(colours: npt.ArrayLike, opacities: npt.ArrayLike) -> npt.NDArray[np.float32]:
-    """Return ``(256, 4)`` RGBA."""
-    return np.column_stack([np.broadcast_to(colours, (256, 3)), opacities]).astype(np.float32)
-
-
-TABLES = {
-    "ramp": table(BLUE + X[:, None] * (ORANGE - BLUE), DENSE * X),
-    "edge": table(ORANGE, np.where(X > 0.37, DENSE, 0.0)),
-    "one-entry peak": table(ORANGE, np.where(ENTRY == 97, DENSE, 0.0)),
-    "one-entry peaks": table(
-        np.where((ENTRY // 16 % 2)[:, None] == 0, ORANGE, BLUE), np.where(ENTRY % 16 == 8, DENSE, 0.0)
-    ),
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,11 +59,7 @@ def cast(
         key = np.frombuffer(buffer.depth.read(), "<u4").reshape(size[::-1])
         there = key != EMPTY
         value = np.frombuffer(buffer.position.read(), "<f4").reshape(*size[::-1], 2)[..., 1].astype(np.float64)
-        light = np.zeros((*size[::-1], 4))
-        if buffer.colours is not None:
-            rgba = np.frombuffer(buffer.colours.read(), "u1").reshape(*size[::-1], 4) / 255.0
-            rgba[..., :3] *= rgba[..., 3:]
-            light = np.where(there[..., None], rgba, 0.0)
+        light = np.zeros((*size[::-1], 4)) if buffer.colours is None else light_of(buffer)
         return Cast(there, np.where(there, key / 4294967295.0, 1.0), value, light)
     finally:
         renderer.release()
@@ -86,9 +67,7 @@ def cast(
 
 def ball(n: int = 16, affine: npt.ArrayLike | None = None) -> RaycastVolume:
     """A field that falls from the middle to the corners, from 1 to 0."""
-    at = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, n)] * 3, indexing="ij"), axis=-1)
-    values = np.clip(1.0 - np.linalg.norm(at, axis=-1) / 1.2, 0.0, 1.0).astype(np.float32)
-    return RaycastVolume(values, np.eye(4) if affine is None else np.asarray(affine, np.float64))
+    return RaycastVolume(field("ball", n).values, np.eye(4) if affine is None else np.asarray(affine, np.float64))
 
 
 def looking_at(volume: RaycastVolume) -> Array:
@@ -121,7 +100,7 @@ def surface(
 
 def steep(name: str, kappa_step: float) -> Transfer:
     """Return a table whose largest extinction times a step is a number."""
-    return Transfer(TABLES[name], (0.0, 1.0), -STEP * np.log1p(-DENSE) / kappa_step)
+    return Transfer(tables()[name].astype(np.float32), (0.0, 1.0), -STEP * np.log1p(-DENSE) / kappa_step)
 
 
 @CASES.add(
@@ -134,7 +113,7 @@ def _steep(setting: Setting) -> Outcome:
     volume = ball()
     matrix = looking_at(volume)
     through, found = rays(matrix, SIZE, volume), []
-    for name in TABLES:
+    for name in tables():
         for kappa_step in (1e-3, 0.1, 10.0, 1e3):
             transfer = steep(name, kappa_step)
             shown = cast(
@@ -155,7 +134,7 @@ def _noise(setting: Setting) -> Outcome:
     matrix = looking_at(volume)
     through, found = rays(matrix, SIZE, volume), []
     for kappa_step in (1e-2, 1.0, 100.0):
-        transfer = steep("one-entry peak", kappa_step)
+        transfer = steep("peak", kappa_step)
         shown = cast(setting, volume, RaycastOptions("composite", transfer=transfer, step=STEP, stop=0.9999), matrix)
         off = np.abs(shown.light - reference.composite(volume, transfer, through)).max(axis=-1)
         found.append(Outcome(1e3 * float((off > HUNDREDTH).mean()), 2.0, "pixels in 1,000", f"κΔ {kappa_step:g}"))
@@ -358,8 +337,7 @@ def _opaque(setting: Setting) -> Outcome:
     matrix = looking_at(volume)
     through = rays(matrix, SIZE, volume)
     inside = np.nan_to_num(through.far - through.near) > 1.0
-    clear = Transfer(table(ORANGE, np.zeros(256)), (0.0, 1.0), 1.0)
-    solid = Transfer(table(ORANGE, np.ones(256)), (0.0, 1.0), 1.0)
+    clear, solid = (Transfer(np.full((2, 4), opacity, np.float32), (0.0, 1.0), 1.0) for opacity in (0.0, 1.0))
     none = cast(setting, volume, RaycastOptions("composite", transfer=clear), matrix).light.max()
     full = cast(setting, volume, RaycastOptions("composite", transfer=solid), matrix).light[..., 3][inside]
     return Outcome(float(max(none, (1.0 - full).max())), HUNDREDTH, LIGHT)

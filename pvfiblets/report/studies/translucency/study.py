@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ...record import FRAME, Axes, Figure, Record
-from ...study import LATE, Options, Unavailable
+from ...study import LATE, Options, Study, Unavailable
 from ...timing import timing
 from ..antialias.study import OURS, PictureWindow, Subject, differences
 
 SIZE, QUICK_SIZE = (800, 600), (320, 240)
 SEGMENTS, QUICK_SEGMENTS = 1_000_000, 60_000  # of a synthetic brain
-STEP, LENGTH = 0.5, 94.0  # mm, of its points and of its streamlines on average
+STEP = 0.5  # mm, of its points
 OPACITIES, QUICK_OPACITIES = (0.02, 0.05, 0.2, 0.5), (0.05, 0.5)
 LAYERS = 64  # of the reference
 WAYS: tuple[tuple[str, Any], ...] = (
@@ -24,39 +24,22 @@ WAYS: tuple[tuple[str, Any], ...] = (
 )  # fmt: skip
 
 
-class TranslucencyStudy:
-    """Pictures of translucent lines beside an exact sort of each pixel's."""
-
-    name = "translucency"
-    title = "Lines seen through each other"
-    approximates = "All lines of a pixel, sorted by depth and blended one by one."
-    axes = (Axes("opacity", "times/frame", "errors/rms", "ms per frame", "rms error, levels of 255"),)
-    notes = (
-        "PyVista windows, all of VTK's work included; the camera turns by 1.14° between frames. *all*: the nearest "
-        "line as it is, the others in slices by how far behind it they are. *layers*: so many of the nearest lines, "
-        "sorted. "
-        "*times opaque*: beside a frame of the same window with opacity 1.",
-        "The reference are 64 layers, sorted exactly. Errors are root mean squares over the pixels that hold 64 lines "
-        "or fewer, so that it leaves none out; *counted* is their share of the pixels that show anything.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every opacity and way of blending."""
-        try:
-            import pyvista as pv
-        except ImportError as error:
-            raise Unavailable(f"{error.name} is not installed") from error
-        for subject in _subjects(options, pv):
-            if not options.allows(subject.name):
-                continue
-            yield from _measured(subject, options)
-
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every opacity and way of blending."""
+    try:
+        import pyvista as pv
+    except ImportError as error:
+        raise Unavailable(f"{error.name} is not installed") from error
+    for subject in _subjects(options, pv):
+        if not options.allows(subject.name):
+            continue
+        yield from _measured(subject, options)
 
 def _subjects(options: Options, pv: Any) -> list[Subject]:
     from pvfiblets.report.studies.codec.coded import compress
-    from pvfiblets.synthetic import brain_streamlines
+    from pvfiblets.synthetic import brain_streamlines, streamline_count
 
-    n = max(round((QUICK_SEGMENTS if options.quick else SEGMENTS) * STEP / LENGTH), 1)
+    n = streamline_count(QUICK_SEGMENTS if options.quick else SEGMENTS, STEP)
     fiblets = compress(brain_streamlines(n, step=STEP, seed=options.seed))
 
     def whole(plotter: pv.BasePlotter) -> None:
@@ -132,4 +115,18 @@ def _measured(subject: Subject, options: Options) -> Iterator[Record]:
     options.log(f"translucency: {subject.name}: {time.perf_counter() - begun:.0f} s")
 
 
-STUDY = TranslucencyStudy()
+STUDY = Study(
+    name="translucency",
+    title="Lines seen through each other",
+    approximates="All lines of a pixel, sorted by depth and blended one by one.",
+    axes=(Axes("opacity", "times/frame", "errors/rms", "ms per frame", "rms error, levels of 255"),),
+    notes=(
+        "PyVista windows, all of VTK's work included; the camera turns by 1.14° between frames. *all*: the nearest "
+        "line as it is, the others in slices by how far behind it they are. *layers*: so many of the nearest lines, "
+        "sorted. "
+        "*times opaque*: beside a frame of the same window with opacity 1.",
+        "The reference are 64 layers, sorted exactly. Errors are root mean squares over the pixels that hold 64 lines "
+        "or fewer, so that it leaves none out; *counted* is their share of the pixels that show anything.",
+    ),
+    run=run,
+)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from pvfiblets.tubes import SplineTubes
 
-from ...cameras import Camera, Lens
+from ...cameras import Camera
 from ...drawing import data_bytes
 from ...timing import Turns, turns_of
 from .pictures import reversed_depth_of
@@ -42,7 +42,7 @@ class Drawing(Protocol):
         """Draw a picture and wait for it."""
         ...
 
-    def visible(self, lens: Lens) -> VisibleDepths:
+    def visible(self, camera: Camera) -> VisibleDepths:
         """Return mm in front of the eye, ``(n,)``, of the last picture's pixels, and which of them show a tube."""
         ...
 
@@ -70,7 +70,7 @@ class CastTubes:
         """Calls that take turns, timed by the context's clock."""
         return turns_of(self._ctx)
 
-    def draw(self, camera: Camera | Lens) -> None:
+    def draw(self, camera: Camera) -> None:
         """Draw a G-buffer, if the camera is not that of the last one."""
         from pvfiblets.engine import View
         from pvfiblets.engine.tubes import TubeStyle
@@ -78,12 +78,12 @@ class CastTubes:
         self._gbuffer = self._renderer.render(View(camera.size, camera.model_view_projection), TubeStyle(min_width=0.0))
         self._ctx.finish()
 
-    def visible(self, lens: Lens) -> VisibleDepths:
+    def visible(self, camera: Camera) -> VisibleDepths:
         """Return what the G-buffer's keys mean."""
         from pvfiblets.engine.gbuffer import EMPTY
 
         keys = np.frombuffer(self._gbuffer.depth.read(), np.uint32)
-        return lens.distance(reversed_depth_of(keys)), keys != EMPTY
+        return camera.distance(reversed_depth_of(keys)), keys != EMPTY
 
     def release(self) -> None:
         """Give everything back."""
@@ -112,10 +112,10 @@ class MeshedTubes:
         self._tubes.render(camera.model_view_projection)
         self._ctx.finish()
 
-    def visible(self, lens: Lens) -> VisibleDepths:
+    def visible(self, camera: Camera) -> VisibleDepths:
         """Return what the depth buffer means."""
         depth = self._tubes.depth().ravel()
-        return lens.distance(1.0 - depth), depth < 1.0
+        return camera.distance(1.0 - depth), depth < 1.0
 
     def release(self) -> None:
         """Give everything back."""

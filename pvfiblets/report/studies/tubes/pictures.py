@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from pvfiblets.tubes import SplineTubes, curves
 
-from ...cameras import Lens
+from ...cameras import Camera
 from .rays import radius_at
 from .reference import ENTRY, nearest_hits
 
@@ -49,23 +49,23 @@ def outline(mask: Mask) -> float:
 class Truth:
     """The right picture of tubes, in all pixels or in some."""
 
-    lens: Lens
+    camera: Camera
     pixels: npt.NDArray[np.int64]  # `(n,)` int64, counted in rows from below
     along: Array  # `(n,)` mm along each pixel's ray to the first tube, infinite where there is none
     radius: Array  # `(n,)` mm of the sphere that is met; 1 where there is none
     forwards: Array  # `(n,)` mm forwards by mm of ray
 
     @classmethod
-    def from_tubes(cls, tubes: SplineTubes, lens: Lens, pixels: npt.NDArray[np.int64] | None = None) -> Truth:
+    def from_tubes(cls, tubes: SplineTubes, camera: Camera, pixels: npt.NDArray[np.int64] | None = None) -> Truth:
         """Meet the rays of pixels, all by default, with all halves, in float64."""
         halves = curves.controls(tubes).reshape(-1, 3, 4)
-        pixels = np.arange(lens.size[0] * lens.size[1]) if pixels is None else pixels
-        directions, forwards = lens.rays(pixels)
-        met = nearest_hits(halves, lens.eye, directions, start=lens.near / forwards, end=lens.far / forwards)
+        pixels = np.arange(camera.size[0] * camera.size[1]) if pixels is None else pixels
+        directions, forwards = camera.rays(pixels)
+        met = nearest_hits(halves, camera.eye, directions, start=camera.near / forwards, end=camera.far / forwards)
         there = met.kind == ENTRY
         radius = np.ones(len(there))
         radius[there] = radius_at(halves[met.half[there]], met.t[there])
-        return cls(lens, pixels, np.where(there, met.l, np.inf), radius, forwards)
+        return cls(camera, pixels, np.where(there, met.l, np.inf), radius, forwards)
 
     @property
     def there(self) -> Mask:
@@ -74,7 +74,7 @@ class Truth:
 
     def errors(self, shown: Array, there: Mask) -> dict[str, float]:
         """Return the errors of a picture; this reference holds all its pixels."""
-        width, height = self.lens.size
+        width, height = self.camera.size
         length = outline(self.there.reshape(height, width))
         off = self.depth_errors(shown, there)
         middle, high = np.quantile(off, (0.5, 0.99)) if len(off) else (math.nan, math.nan)
@@ -94,7 +94,7 @@ class Truth:
         """Return the 99th percentile of errors, radii, that rounding the right window depth to a format makes alone."""
         there = self.there
         exact = self.along[there] * self.forwards[there]
-        kept = self.lens.distance(rounded(1.0 - self.lens.depth(exact)))
+        kept = self.camera.distance(rounded(1.0 - self.camera.depth(exact)))
         off = np.abs(kept - exact) / self.forwards[there] / self.radius[there]
         return float(np.quantile(off, 0.99)) if len(off) else math.nan
 

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from pvfiblets.tubes import SplineTubes, curves
 
-from ...cameras import Lens, orbit, unit
+from ...cameras import orbit, unit
 from .reference import Hits, hits, surface_distance
 
 Array = npt.NDArray[np.float64]
@@ -146,14 +146,15 @@ def of_set(tubes: Any, count: int, size: tuple[int, int], seed: int = 0) -> Rays
     rng = np.random.default_rng([seed, 7])
     parts = []
     for view in ("far", "close"):
-        lens = Lens.from_camera(orbit(tubes, view, 4, size)[0])
+        camera = orbit(tubes, view, 4, size)[0]
         chosen = rng.integers(0, tubes.n_segments, 40 * count)
         middle = tubes.points[tubes.segments[chosen]].mean(axis=1)
         reach = tubes.radius[tubes.segments[chosen]].max(axis=1)
-        x, y, w = lens.project(middle).T
-        shown = (w > lens.near + 2.0 * reach) & (np.abs(y) < lens.slant) & (np.abs(x) < lens.slant * size[0] / size[1])
+        x, y, w = camera.project(middle).T
+        beside = (np.abs(y) < camera.slant) & (np.abs(x) < camera.slant * size[0] / size[1])
+        shown = (w > camera.near + 2.0 * reach) & beside
         some = curves.controls(tubes, chosen[shown][: count // 2])
-        parts.append(aimed(some[np.arange(len(some)), rng.integers(0, 2, len(some))], rng, eye=lens.eye))
+        parts.append(aimed(some[np.arange(len(some)), rng.integers(0, 2, len(some))], rng, eye=camera.eye))
     return Rays(
         *(np.concatenate([getattr(part, key) for part in parts]) for key in ("controls", "origins", "directions"))
     )

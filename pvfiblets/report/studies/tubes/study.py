@@ -11,10 +11,10 @@ import numpy as np
 
 from pvfiblets.tubes import SplineTubes, curves
 
-from ...cameras import VIEWS, Camera, Lens, by_turns, orbit
+from ...cameras import VIEWS, Camera, by_turns, orbit
 from ...drawing import Part, WindowPart, run_parts
 from ...record import Axes, Figure, Record
-from ...study import LATE, Options
+from ...study import LATE, Options, Study
 from ...timing import Comparison
 from .drawings import CastTubes, Drawing, drawings
 from .pictures import FORMATS, Truth, helices, sampled
@@ -25,7 +25,7 @@ from .sweeps import PICTURE_SWEEPS
 if TYPE_CHECKING:
     import moderngl
 
-__all__ = ["STUDY", "TubesStudy"]
+__all__ = ["STUDY"]
 
 SIZE, QUICK_SIZE = (480, 270), (160, 90)
 TUBES = 6  # helices of 24 segments each
@@ -46,14 +46,14 @@ def picture_sweeps(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
             continue
         errors: dict[str, dict[str, Figure]] = {}
         for ratio in ratios[:: 3 if options.quick else 1]:
-            tubes, lens = make(ratio)
-            truth = Truth.from_tubes(tubes, lens)
+            tubes, camera = make(ratio)
+            truth = Truth.from_tubes(tubes, camera)
             by = {}
             for solver in ("auto", "bisection"):
                 drawn = CastTubes(ctx, tubes, solver)
                 try:
-                    drawn.draw(lens)
-                    by[drawn.setting] = truth.errors(*drawn.visible(lens))["depth p99"]
+                    drawn.draw(camera)
+                    by[drawn.setting] = truth.errors(*drawn.visible(camera))["depth p99"]
                 finally:
                     drawn.release()
             by["right, stored as float32"] = truth.stored(FORMATS["float32"])
@@ -102,7 +102,7 @@ def _helices(where: str, makers: Makers, options: Options) -> Iterator[Record]:
         if not options.allows(name):
             continue
         camera = orbit(tubes, view, 2, size)[0]
-        truth = Truth.from_tubes(tubes, Lens.from_camera(camera))
+        truth = Truth.from_tubes(tubes, camera)
         within = options.share()  # the reference took longer than pictures do
         yield from _measured(name, "pictures", camera, makers(tubes, size), _errors_of(truth), within)
 
@@ -111,7 +111,7 @@ def _errors_of(truth: Truth) -> Callable[[Drawing], dict[str, Figure]]:
     units = {"silhouette": "pixels", "depth p50": "radii", "depth p99": "radii"}
 
     def errors(drawn: Drawing) -> dict[str, Figure]:
-        return {key: Figure(value, units[key]) for key, value in truth.errors(*drawn.visible(truth.lens)).items()}
+        return {key: Figure(value, units[key]) for key, value in truth.errors(*drawn.visible(truth.camera)).items()}
 
     return errors
 
@@ -125,21 +125,21 @@ def _sets(where: str, makers: Makers, options: Options) -> Iterator[Record]:
         tubes = tube_set(name, options.seed)
         for view in VIEWS:
             camera = orbit(tubes, view, 2, size)[0]
-            errors = _sampled_errors(tubes, Lens.from_camera(camera), options)
+            errors = _sampled_errors(tubes, camera, options)
             data = f"the set {name}, {view}{where}"
             yield from _measured(data, "sets", camera, makers(tubes, size), errors, options)
 
 
-def _sampled_errors(tubes: SplineTubes, lens: Lens, options: Options) -> Callable[[Drawing], dict[str, Figure]]:
+def _sampled_errors(tubes: SplineTubes, camera: Camera, options: Options) -> Callable[[Drawing], dict[str, Figure]]:
     """Return what compares pictures in pixels that are chosen by what the first of them shows."""
     truths: list[Truth] = []
 
     def errors(drawn: Drawing) -> dict[str, Figure]:
-        shown, there = drawn.visible(lens)
+        shown, there = drawn.visible(camera)
         if not truths:
             rng = np.random.default_rng([options.seed, 1])
             count = QUICK_SAMPLE if options.quick else SAMPLE
-            truths.append(Truth.from_tubes(tubes, lens, sampled(there.reshape(lens.size[::-1]), count, rng)))
+            truths.append(Truth.from_tubes(tubes, camera, sampled(there.reshape(camera.size[::-1]), count, rng)))
         (truth,) = truths
         here, should = there[truth.pixels], truth.there
         off = truth.depth_errors(shown[truth.pixels], here)
@@ -196,8 +196,7 @@ def stored(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
     """Yield records of depth by its stored format, and by the distance between the near and the far plane."""
     tubes, size = helices(2), QUICK_SIZE
     far = orbit(tubes, "far", 2, size)[0]
-    lens = Lens.from_camera(far)
-    truth = Truth.from_tubes(tubes, lens)
+    truth = Truth.from_tubes(tubes, far)
     drawn = CastTubes(ctx, tubes)
     names = [f"p99 at far/near {ratio:g}" for ratio in (QUICK_RANGES if options.quick else RANGES)]
     errors: dict[str, dict[str, Figure]] = {name: {} for name in ("key of 32 bits, as drawn", *FORMATS)}
@@ -206,9 +205,9 @@ def stored(ctx: moderngl.Context, options: Options) -> Iterator[Record]:
             if not options.allows(f"stored depth: {name}"):
                 continue
             camera = replace(far, near=far.far / ratio)
-            seen = replace(truth, lens=Lens.from_camera(camera))
+            seen = replace(truth, camera=camera)
             drawn.draw(camera)
-            shown = seen.errors(*drawn.visible(seen.lens))["depth p99"]
+            shown = seen.errors(*drawn.visible(seen.camera))["depth p99"]
             errors["key of 32 bits, as drawn"][name] = Figure(shown, "radii")
             for kind, rounded in FORMATS.items():
                 errors[kind][name] = Figure(seen.stored(rounded), "radii")
@@ -250,24 +249,27 @@ PARTS: dict[Part, float] = {
 IN_WINDOWS: dict[WindowPart, float] = {in_windows: 4.0}  # measurements, and the weight of each part's share of the time
 
 
-class TubesStudy:
-    """Ray-cast spline tubes beside the paper's solver and beside tessellation."""
+def run(options: Options) -> Iterator[Record]:
+    """Yield records part by part, each with its share of what time is left."""
+    return run_parts(PARTS, options, IN_WINDOWS)
 
-    name = "tubes"
-    title = "Ray-cast spline tubes"
-    approximates = (
+
+STUDY = Study(
+    name="tubes",
+    title="Ray-cast spline tubes",
+    approximates=(
         "Intersections of rays with tubes of varying radius, found in float32 by a bounded number of steps: solvers by "
         "iterations, beside the paper's; whole pictures, beside tessellation; depth, by its stored format."
-    )
-    axes = (
+    ),
+    axes=(
         Axes("hit-p99", "times/hit", "errors/hit p99", "ns per ray", "99th percentile of errors, radii"),
         Axes("hit-max", "times/hit", "errors/hit max", "ns per ray", "largest error, radii"),
         Axes("silhouette", "times/draw", "errors/silhouette", "ms per frame", "silhouettes off, pixels"),
         Axes("depth", "times/draw", "errors/depth p50", "ms per frame", "median of depth errors, radii"),
         Axes("ratio", "", "errors/p99 at ratio ", "ratio that the title names", "99th percentile, radii", series=True),
         Axes("stored", "", "errors/p99 at far/near ", "far over near plane", "99th percentile, radii", series=True),
-    )
-    notes = (
+    ),
+    notes=(
         "The right answer is found in float64 by another method (report/studies/tubes/reference.py: eigenvalues of "
         "companion matrices, nothing is bracketed). Errors are in radii of the sphere that is met: along the ray, "
         "where it meets "
@@ -293,11 +295,6 @@ class TubesStudy:
         "*in a window*: the same pictures in PyVista windows with one light at the eye: `plotter.add_spline_tubes`, "
         "VTK's tube filter around the nodes' polylines, or around more samples of each segment, and VTK's lines shaded "
         "as tubes, as wide as the mean radius. Meshes of more than 12 million corners are left out.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield records part by part, each with its share of what time is left."""
-        return run_parts(PARTS, options, IN_WINDOWS)
-
-
-STUDY = TubesStudy()
+    ),
+    run=run,
+)

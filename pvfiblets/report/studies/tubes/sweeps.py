@@ -9,7 +9,7 @@ import numpy as np
 
 from pvfiblets.tubes import SplineTubes, curves
 
-from ...cameras import Lens, unit
+from ...cameras import Camera, unit
 from .rays import Rays, aimed, halves
 
 __all__ = ["PICTURE_SWEEPS", "SWEEPS"]
@@ -73,7 +73,7 @@ def nine_tubes(centre: Any) -> SplineTubes:
     """Return bent tubes beside each other, of a radius of about 1 and 10 long; the first is straight, in the middle."""
     rng = np.random.default_rng(5)
     grid = 11.0 * np.array([[x, y, 0.0] for y in (0, -1, 1) for x in (0, -1, 1)])
-    axes = Lens((1, 1), np.zeros(3), BACKWARDS, 1.0, 1.0, 2.0).axes
+    axes = Camera((1, 1), BACKWARDS, np.zeros(3), 1.0, 2.0).axes
     run = 5.0 * unit(rng.normal(size=(9, 3)))
     run[0] = 5.0 * axes[0]
     bends = 2.0 * run[:, None] + rng.normal(0.0, 3.0, (9, 2, 3)) * (np.arange(9) > 0)[:, None, None]
@@ -86,20 +86,21 @@ def nine_tubes(centre: Any) -> SplineTubes:
     )  # fmt: skip
 
 
-def from_afar(ratio: float) -> tuple[SplineTubes, Lens]:
-    """Return tubes and a lens so many radii away, ever longer, so that they fill the picture as they do from near."""
+def from_afar(ratio: float) -> tuple[SplineTubes, Camera]:
+    """Return tubes and a camera so many radii away, ever longer, so that they fill the picture as they do from near."""
     slant, near = min(EXTENT / ratio, 1.0), max(ratio - EXTENT, 0.5 * (ratio - 1.0))
-    return nine_tubes(np.zeros(3)), Lens((SIDE, SIDE), ratio * BACKWARDS, BACKWARDS, slant, near, ratio + EXTENT)
+    middle = np.zeros(3)
+    return nine_tubes(middle), Camera((SIDE, SIDE), ratio * BACKWARDS, middle, near, ratio + EXTENT, slant)
 
 
-def moved(ratio: float) -> tuple[SplineTubes, Lens]:
-    """Return tubes that lie so many of their extents away from 0, and a lens before them."""
+def moved(ratio: float) -> tuple[SplineTubes, Camera]:
+    """Return tubes that lie so many of their extents away from 0, and a camera before them."""
     centre = 2.0 * EXTENT * ratio * unit(np.array([1.0, -0.7, 0.4]))
     eye = centre + 60.0 * BACKWARDS
-    return nine_tubes(centre), Lens((SIDE, SIDE), eye, BACKWARDS, EXTENT / 60.0, 60.0 - EXTENT, 60.0 + EXTENT)
+    return nine_tubes(centre), Camera((SIDE, SIDE), eye, centre, 60.0 - EXTENT, 60.0 + EXTENT, EXTENT / 60.0)
 
 
-PICTURE_SWEEPS: dict[str, tuple[str, tuple[float, ...], Callable[[float], tuple[SplineTubes, Lens]]]] = {
+PICTURE_SWEEPS: dict[str, tuple[str, tuple[float, ...], Callable[[float], tuple[SplineTubes, Camera]]]] = {
     "distance": ("distance of the eye over radius", (1.1, 1.5, 3.0, 10.0, *(10.0**k for k in range(2, 8))), from_afar),
     "offset": ("distance from 0 over extent", tuple(10.0**k for k in range(8)), moved),
 }

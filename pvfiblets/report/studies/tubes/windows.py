@@ -9,7 +9,7 @@ import numpy as np
 
 from pvfiblets.tubes import SplineTubes, curves
 
-from ...cameras import Camera, Lens
+from ...cameras import Camera
 from ...drawing import data_bytes
 from ...window import Window
 from .drawings import Drawing, VisibleDepths
@@ -26,7 +26,7 @@ class _TubeWindow(Window):
     def __init__(self, size: tuple[int, int]) -> None:
         super().__init__(size, headlight=True)
 
-    def visible(self, _: Lens) -> VisibleDepths:
+    def visible(self, _: Camera) -> VisibleDepths:
         """Return what the frame's depths mean, with the planes that VTK drew it by."""
         near, far = self.plotter.camera.clipping_range
         depth = self.depths().astype(np.float64).ravel()

@@ -1,4 +1,4 @@
-"""Integrators of volumes: light from thin to stiff, and the bare formulae."""
+"""Integrators of volumes: light from thin to stiff."""
 
 from __future__ import annotations
 
@@ -18,9 +18,7 @@ from ...timing import Comparison, turns_of
 from . import reference
 from .drawing import drawing, drawn, sample
 from .fields import DENSE, field, tables
-from .formulae import STABLE_UP_TO, study
 from .pictures import light_of
-from .reference_profiles import profiles
 from .scene import TOLERANCE, circle
 
 if TYPE_CHECKING:
@@ -28,7 +26,6 @@ if TYPE_CHECKING:
 
 DENSITIES, QUICK_DENSITIES = (1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3), (0.1, 10.0, 1e3)
 STEPS, QUICK_STEPS = (0.25, 0.5, 1.0), (0.5,)  # voxels
-STEPS_OF_A_RAY = 64  # of a bare formula
 SIDE = 32  # voxels along each side
 LIGHT_SIZE = (96, 72)
 LIGHT_PIXELS, QUICK_LIGHT_PIXELS = 3000, 300
@@ -109,31 +106,3 @@ def _by_density(name: str, found: list[tuple[float, Record]]) -> Iterator[Record
         if errors:
             step = f"step {RaycastOptions.step:g}"
             yield Record(name, "stiff", "light along a ray", integrator, step, errors, ours=True)
-
-
-def formulae(ctx: moderngl.Context, options: Options) -> Iterator[Record]:  # noqa: ARG001 - as other parts
-    """Yield records of the bare formulae in float32, without the shaders' limits, against closed forms."""
-    densities = QUICK_DENSITIES if options.quick else DENSITIES
-    if not options.allows("bare formulae"):
-        return
-    rows = [
-        (density, row)
-        for density in densities
-        for row in study(profiles([density * STEPS_OF_A_RAY]), (STEPS_OF_A_RAY,))
-    ]
-    for method in dict.fromkeys(row.method for _, row in rows):
-        mine = [(density, row) for density, row in rows if row.method == method]
-        errors = {
-            f"max at κΔ {density:g}": Figure(max(row.error for at, row in mine if at == density), "of 1")
-            for density in densities
-        }
-        errors["leaves 0 to 1"] = Figure(100.0 * float(np.mean([not row.bounded for _, row in mine])), "% of profiles")
-        limit = STABLE_UP_TO.get(method)
-        yield Record(
-            data="bare formulae",
-            group="stiff",
-            approximation="light along a ray",
-            method=method,
-            setting="never unstable" if limit is None else f"unstable beyond κΔ {limit:.3g}",
-            errors=errors,
-        )

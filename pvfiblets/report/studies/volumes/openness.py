@@ -11,7 +11,7 @@ import numpy.typing as npt
 from pvfiblets.synthetic.vessels import brain_like, vessel_tree
 from pvfiblets.volumes import RaycastVolume
 
-from ...cameras import Lens, unit
+from ...cameras import Camera, unit
 from . import reference
 
 BESIDE = 0.05  # mm
@@ -37,10 +37,8 @@ def seen_from(volume: RaycastVolume, size: tuple[int, int], away: tuple[float, f
     """Return a matrix that shows a volume from a direction, and fills the picture with it."""
     bounds = np.array(volume.bounds).reshape(3, 2)
     middle, reach = bounds.mean(axis=1), float(np.ptp(bounds, axis=1).max())
-    backwards = unit(np.array(away))
-    slant = float(np.tan(np.radians(27.0) / 2.0))
-    lens = Lens(size, middle + 2.2 * reach * backwards, backwards, slant, 1.2 * reach, 3.4 * reach)
-    return lens.model_view_projection
+    eye, slant = middle + 2.2 * reach * unit(np.array(away)), float(np.tan(np.radians(27.0) / 2.0))
+    return Camera(size, eye, middle, 1.2 * reach, 3.4 * reach, slant).model_view_projection
 
 
 def exact_openness(

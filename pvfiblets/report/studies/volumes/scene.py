@@ -16,7 +16,7 @@ import numpy.typing as npt
 from pvfiblets.volumes import RaycastVolume, Transfer
 from pvfiblets.volumes.raycast_options import RaycastOptions
 
-from ...cameras import ELEVATION, VERTICAL_ANGLE, Camera
+from ...cameras import Camera, circling, fitting
 from . import reference
 
 GOLDEN = 360.0 * (1.0 - 2.0 / (1.0 + math.sqrt(5.0)))  # degrees: however few frames are drawn, they lie all around
@@ -62,15 +62,9 @@ def circle(volume: RaycastVolume, frames: int, size: tuple[int, int]) -> list[Ca
     # A face of the volume's box fills three quarters of the picture; its corners may lie outside.
     box = np.array(volume.bounds).reshape(3, 2)
     centre, radius = box.mean(axis=1), 0.5 * float(np.linalg.norm(np.ptp(box, axis=1)))
-    narrow = min(1.0, size[0] / size[1]) * math.tan(math.radians(VERTICAL_ANGLE / 2))
-    distance = NEARER * radius / math.sin(math.atan(narrow))
-    up = math.radians(ELEVATION)
-    cameras = []
-    for turn in np.radians(20.0 + GOLDEN * np.arange(frames)):
-        direction = np.array([math.cos(up) * math.cos(turn), math.cos(up) * math.sin(turn), math.sin(up)])
-        eye = centre + distance * direction
-        cameras.append(Camera((size[0], size[1]), eye, centre, distance - 1.02 * radius, distance + 1.02 * radius))
-    return cameras
+    distance = NEARER * fitting(radius, size)
+    turns = np.radians(20.0 + GOLDEN * np.arange(frames))
+    return circling(centre, distance, turns, size, distance - 1.02 * radius, distance + 1.02 * radius)
 
 
 @dataclass(frozen=True, eq=False)

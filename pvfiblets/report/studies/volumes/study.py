@@ -14,10 +14,10 @@ from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
 from ...cameras import by_turns
 from ...drawing import Part, WindowPart, run_parts
 from ...record import Axes, Figure, Record
-from ...study import Options
+from ...study import Options, Study
 from ...timing import Comparison, turns_of
 from .drawing import drawing, drawn
-from .integrators import LIGHT_SIZE, SIDE, formulae, integrators
+from .integrators import LIGHT_SIZE, SIDE, integrators
 from .occlusion import RADIUS, openness
 from .pictures import GroundTruth, colours_of, ground_truth_of, places
 from .scene import Look, circle, look_of
@@ -153,29 +153,32 @@ def _varied(
 # --------------------------------------------------------------------------------------------------------------- study
 
 
-PARTS: dict[Part, float] = {integrators: 4.0, formulae: 0.5, pictures: 4.0, openness: 2.0}
+PARTS: dict[Part, float] = {integrators: 4.0, pictures: 4.0, openness: 2.0}
 IN_WINDOWS: dict[WindowPart, float] = {beside_vtk: 4.0}
 """What is measured, and by what weight each part has its share of the time."""
 
 
-class VolumeStudy:
-    """Ray-cast volumes by all that may be set, thin to stiff."""
+def run(options: Options) -> Iterator[Record]:
+    """Yield records part by part, each with its share of what time is left."""
+    return run_parts(PARTS, options, IN_WINDOWS)
 
-    name = "volumes"
-    title = "Ray-cast volumes"
-    approximates = (
+
+STUDY = Study(
+    name="volumes",
+    title="Ray-cast volumes",
+    approximates=(
         "Light along rays through a volume, added up step by step: integrators, steps, early ends, skipped "
         "nodes, sparse rays; where surfaces lie; ambient occlusion by few rays."
-    )
-    axes = (
+    ),
+    axes=(
         Axes("light", "times/draw", "errors/light rms", "ms per frame", "rms error of light and opacity, of 1"),
         Axes("largest", "times/draw", "errors/light max", "ms per frame", "largest error of light, of 1"),
         Axes("stiff", "", "errors/max at κΔ ", "κΔ of a step of half a voxel", "largest error of light", series=True),
         Axes("colour", "times/draw", "errors/colour rms", "ms per frame", "rms error of colours, of 1"),
         Axes("place", "times/draw", "errors/place", "ms per frame", "mean error of a surface's place, voxels"),
         Axes("openness", "times/occlusion", "errors/openness rms", "ms per frame", "rms error of openness, of 1"),
-    )
-    notes = (
+    ),
+    notes=(
         "The right answer is found in float64, ray by ray and cell by cell, without steps "
         "(report/studies/volumes/reference.py), in a sample of the pixels whose rays meet the volume. Colours and "
         "opacities are from 0 to 1; pictures keep them in 8 bits, which makes up 0.003 of largest errors and 0.001 of "
@@ -184,8 +187,7 @@ class VolumeStudy:
         "functions that rise gently (*ramp*), that jump (*edge*), and that are zero but for one entry (*peak*) or "
         "several (*peaks*). κΔ is the optical depth of a step of half a voxel where they are densest. The default is "
         "*adaptive*: it halves steps where one look-up in a pre-integrated table is not enough, and is *preintegrated* "
-        "elsewhere. *bare formulae*: in float32 on profiles of 64 steps whose light has a closed form, without the "
-        "limits that shaders set to what a step may give; *leaves 0 to 1*: profiles whose colours or opacities do.",
+        "elsewhere.",
         "Pictures: a synthetic tree of vessels in each mode, one thing varied at a time, integrators and refinements "
         "at each step: its length in voxels; *early end*, the opacity at which a ray ends; *homogeneous nodes*, whose "
         " values are taken as one if they differ by no more; *nodes as one*, where neither colour nor opacity "
@@ -199,11 +201,6 @@ class VolumeStudy:
         "*in a window*: `plotter.add_raycast_volume` and `plotter.add_volume(mapper='gpu')` in PyVista windows, one "
         "light at the eye, one transfer function, the same lengths of steps: compare times at equal errors. *cast*: "
         "the share of the octree's leaves that is not skipped.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield records part by part, each with its share of what time is left."""
-        return run_parts(PARTS, options, IN_WINDOWS)
-
-
-STUDY = VolumeStudy()
+    ),
+    run=run,
+)

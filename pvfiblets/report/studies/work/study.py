@@ -15,7 +15,7 @@ from pvfiblets.engine.gbuffer import EMPTY
 
 from ...drawing import drawing_context
 from ...record import Axes, Figure, Record
-from ...study import Options
+from ...study import Options, Study
 from ..culling.pictures import views
 from .counts import ROUNDS, Calls, counted, frame_lanes, pass_work
 
@@ -25,50 +25,30 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
 SEGMENTS, QUICK_SEGMENTS = (6e6, 60e6, 434e6, 600e6), (2e5,)  # of synthetic brains
-STEP, LENGTH = 0.1, 94.0  # mm: distance of points; mean length of a streamline
+STEP = 0.1  # mm between points
 SIZE, QUICK_SIZE = (1920, 1080), (320, 180)
 SLOW, JUMP = 1.14, 120.0  # degrees a frame; and at once
 STEADY = 3  # frames before the one that is counted
 SCENES = ("first", "far", "close", "inside", "jump")
 
 
-class WorkStudy:
-    """What a frame asks of a card, by pass."""
+def run(options: Options) -> Iterator[Record]:
+    """Yield a record for every pass of every scene, and one of the frame."""
+    from pvfiblets.synthetic import brain, streamline_count
 
-    name = "work"
-    title = "Work of a frame"
-    approximates = (
-        "No approximation: fiblets tested and drawn, bytes, calls and milliseconds of a frame of the compute pipeline."
-    )
-    axes = (Axes("work", "costs/read", "costs/fiblets", "MB read", "fiblets", alternatives=False),)
-    notes = (
-        "*first*: the first frame, from outside. *far*, *close*, *inside*: a frame of a flight of 1.14° a frame, from "
-        "where the set fits the frame, from a third of that, from near the middle. *jump*: 120° from the frame "
-        "before, from outside.",
-        "Fiblets are counted, and the same on every driver; so are calls, but for pyramids, which software draws and "
-        "cards compute by two dispatches, and for what cards with 64-bit atomics leave out. Bytes follow from the "
-        "layouts, each read or written once. *H100*: these bytes at 3.35 TB/s and 5 µs a dispatch, an estimate. "
-        "*here*: this machine. *lanes*: the share of lanes that have a fiblet, in subgroups of 8, 32 and 64.",
-    )
-
-    def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every pass of every scene, and one of the frame."""
-        from pvfiblets.synthetic import brain
-
-        size = QUICK_SIZE if options.quick else SIZE
-        with drawing_context(options) as ctx:
-            for segments in QUICK_SEGMENTS if options.quick else SEGMENTS:
-                name = f"{segments / 1e6:g} M segments"
-                if not options.allows(name):
-                    continue
-                try:
-                    fiblets = brain(max(round(segments * STEP / LENGTH), 1), STEP, options.seed)
-                    for scene in SCENES:
-                        if options.allows(f"{name}, {scene}"):
-                            yield from measured(ctx, fiblets, name, scene, size)
-                except (EngineError, MemoryError) as error:
-                    options.leave_out(name, error or "memory does not suffice")
-
+    size = QUICK_SIZE if options.quick else SIZE
+    with drawing_context(options) as ctx:
+        for segments in QUICK_SEGMENTS if options.quick else SEGMENTS:
+            name = f"{segments / 1e6:g} M segments"
+            if not options.allows(name):
+                continue
+            try:
+                fiblets = brain(streamline_count(segments, STEP), STEP, options.seed)
+                for scene in SCENES:
+                    if options.allows(f"{name}, {scene}"):
+                        yield from measured(ctx, fiblets, name, scene, size)
+            except (EngineError, MemoryError) as error:
+                options.leave_out(name, error or "memory does not suffice")
 
 def flight(bounds: Any, scene: str, size: tuple[int, int]) -> list[View]:
     """Return the views of a scene; the last is counted."""
@@ -143,4 +123,21 @@ def records(
     yield Record(data, "", "work", "frame", "", {}, costs, ours=True, default=True)
 
 
-STUDY = WorkStudy()
+STUDY = Study(
+    name="work",
+    title="Work of a frame",
+    approximates=(
+        "No approximation: fiblets tested and drawn, bytes, calls and milliseconds of a frame of the compute pipeline."
+    ),
+    axes=(Axes("work", "costs/read", "costs/fiblets", "MB read", "fiblets", alternatives=False),),
+    notes=(
+        "*first*: the first frame, from outside. *far*, *close*, *inside*: a frame of a flight of 1.14° a frame, from "
+        "where the set fits the frame, from a third of that, from near the middle. *jump*: 120° from the frame "
+        "before, from outside.",
+        "Fiblets are counted, and the same on every driver; so are calls, but for pyramids, which software draws and "
+        "cards compute by two dispatches, and for what cards with 64-bit atomics leave out. Bytes follow from the "
+        "layouts, each read or written once. *H100*: these bytes at 3.35 TB/s and 5 µs a dispatch, an estimate. "
+        "*here*: this machine. *lanes*: the share of lanes that have a fiblet, in subgroups of 8, 32 and 64.",
+    ),
+    run=run,
+)
