@@ -29,7 +29,7 @@ bool fails_criteria(uint f, Capsule c, out bool partly) {
 #if FEATURE_POINT_MASK
     begin_point_mask(f);
     if (!any_point_shown()) return true;
-    partly = !all_points_shown();
+    partly = !all_points_shown() || cut_beside(f);
 #endif
 #if FEATURE_CLIP_PLANES
     if (beyond_clip_planes(c)) return true;

@@ -11,6 +11,7 @@ from pvfiblets import compress
 from pvfiblets.codec.point_values import PointValues, linear_table
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.data import measures
+from pvfiblets.engine.fiblets.data.filter_textures import Filter
 from pvfiblets.engine.fiblets.pipelines.hardware_raster import RasterTarget, SeenTexture
 from pvfiblets.engine.fiblets.pipelines.limits import Limits
 from pvfiblets.engine.gl.moderngl_extras import GLExtras
@@ -105,6 +106,20 @@ def test_pixels_show_what_compute_finds(gl, camera, style, pipeline):
     assert len(words) == (0 if style == FibletStyle() else 2)
     for ours, theirs in zip(words, their_words, strict=True):
         assert np.array_equal(ours, theirs)
+
+
+def test_wide_lines_join_alike_where_points_are_hidden(gl, camera):
+    """Of compute, fiblets with all their points have a program that knows no mask: joints are the same."""
+    fiblets, view = compress(brain_streamlines(300, step=0.5, seed=4)), View(SIZE, camera(SIZE))
+    words = np.random.default_rng(0).integers(0, 1 << 32, (4, fiblets.n_points // 32 + 1), np.uint32)
+    pictures = []
+    for name in ("compute", "geometry"):
+        renderer = FibletRenderer(gl, fiblets, pipeline=name)
+        renderer.filtering = Filter(points=np.bitwise_or.reduce(words))
+        pictures.append(read(renderer.render(view, FibletStyle(3.0))))
+        renderer.release()
+    assert pictures[0].drawn.sum() > 5000
+    assert_same(*pictures)
 
 
 @pytest.mark.every("value")

@@ -27,12 +27,15 @@ vec3 first_segment(uint f) {
 #endif
 }
 
-// Whether the fiblet after this one is drawn as this one is: as one segment, or not.
+// Whether the fiblet after this one is drawn as this one is: as one segment, or not. Of one that may be drawn as one segment it is not
+// known which of its points are hidden.
 bool alike_after(uint f, bool whole) {
+    if (ends(f) || f + 1u >= chunk_fiblets) return false;
+    bool next = is_one_segment(capsule_of(f + 1u));
 #if FEATURE_POINT_MASK
-    return false;
+    return !whole && !next;
 #else
-    return !ends(f) && f + 1u < chunk_fiblets && is_one_segment(capsule_of(f + 1u)) == whole;
+    return next == whole;
 #endif
 }
 

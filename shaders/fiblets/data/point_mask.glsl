@@ -52,6 +52,9 @@ bool all_points_shown() {
 
 bool point_bit(uint i) { return (((i < 32u ? mask_low : mask_high) >> (i & 31u)) & 1u) != 0u; }
 
+// Whether the segment before or after the fiblet's is hidden: its line starts, or ends, with the fiblet.
+bool cut_beside(uint f) { return !begins(f) && !mask_before || mask_joined && !point_bit(mask_segments + 1u); }
+
 // Whether segment i is drawn; where a neighbour is not, the line starts or ends here.
 bool mask_segment(uint i, inout bool start, inout bool cap) {
     bool here = point_bit(i);
