@@ -19,7 +19,7 @@ from pvfiblets.synthetic import brain_streamlines
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 folder.mkdir(parents=True, exist_ok=True)
 fiblets = pvfiblets.compress(brain_streamlines(6000, seed=3))
-fiblets.groups = fiblets.clusters(threshold=18.0).groups("bundle {}", at_least=200)
+fiblets.groups = dict(list(fiblets.clusters(threshold=18.0).groups("bundle {}").items())[:8])  # the largest
 blocks = fiblets.density(40.0)  # voxels of 40 mm serve as an atlas; a file's path would do as well
 matrix = fiblets.connectome((1 + np.arange(blocks.values.size).reshape(blocks.values.shape), blocks.affine), radius=0.0)
 strongest = matrix.labels[list(np.unravel_index(np.triu(matrix.matrix, 1).argmax(), matrix.matrix.shape))].tolist()
