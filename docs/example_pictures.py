@@ -41,6 +41,7 @@ PICTURES: dict[str, tuple[tuple[str, str], ...]] = {
     "pictures/volume_tracts": (("23_tracts_in_their_anatomy", "tracts_in_their_anatomy"),),
     "pictures/volume_inside": (("24_inside_a_volume", "inside_a_volume"),),
     "pictures/density": (("25_density", "density"),),
+    "pictures/workspace": (("26_linked_slices", "slices"),),
     "pictures/bundles": (("27_bundles_and_matrix", "bundles"),),
     "pictures/bundles_numbers": (("27_bundles_and_matrix", "bundles_numbers"),),
     "pictures/connectome": (("29_connectome", "connectome"),),

@@ -60,7 +60,7 @@ def page(folder: Path) -> Image.Image:
     """An exported page in the browser."""
     run("docs/pages.md", folder)
     with launched([*(flag for flag in FLAGS if flag != "--disable-gpu"), *WEBGL]) as browser:
-        opened = Page(browser, folder / "figure.html", size=(1000, 720))
+        opened = Page(browser, folder / "figure.html", size=(1280, 720))
         opened.page.locator("#panel > summary").click()
         opened.page.get_by_role("button", name="Left").click()
         opened.settled()

@@ -67,15 +67,15 @@ def frames() -> Figure:
     figure, (*row,) = panels(2, 2)
     for name, points in by_way(lambda one: one["ms_per_frame"]).items():
         line(row[0], name, points)
-    axes(row[0], "segments", "ms", "processor, 1920×1080")
+    axes(row[0], "segments", "ms", "CPU, 1920×1080")
     fury = record("other-viewers")["fury"]
     for program in ("fiblets", "VTK lines, aliased", "FURY"):
         line(row[1], program, [(n, sum(ms) / len(ms)) for n, name, ms in fury["rows"] if name == program])
-    axes(row[1], "segments", "CPU time, ms", "FURY, processor, 1280×720")
+    axes(row[1], "segments", "CPU time, ms", "FURY, CPU, 1280×720")
     line(row[2], "page, full resolution", in_browser("page", "full_frame_ms"))
     line(row[2], "page, interactive", in_browser("page", "interactive_frame_ms"))
     line(row[2], "NiiVue", in_browser("NiiVue", "full_frame_ms"))
-    axes(row[2], "points", "ms", "NiiVue, Chromium, processor, 800×600")
+    axes(row[2], "points", "ms", "NiiVue in Chromium, CPU, 800×600")
     card = [one for one in record("card-nvidia-h100-80gb-hbm3")["results"] if one.get("ms")]
     compute = [one for one in card if one.get("pipeline") == "compute" and one["culling"] == "two-phase"]
     line(row[3], "fiblets", [(one["segments"], one["ms"]) for one in compute])

@@ -570,6 +570,7 @@ def save(here: Visit, path: Path) -> None:
     from PIL import Image
 
     if here.page.locator("#pv-view").count() and not path.stem.endswith("conversion"):
+        here.wait(lambda: not here.page.locator("#busy").count(), "the end of work in the background")
         here.rests()
     here.page.mouse.move(640, 719)
     here.page.wait_for_timeout(400)  # what opens and closes has come to rest

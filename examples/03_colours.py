@@ -18,11 +18,12 @@ from pvfiblets.synthetic import BUNDLES, brain_streamlines
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 folder.mkdir(parents=True, exist_ok=True)
 fiblets = pvfiblets.compress(brain_streamlines(8_000, fa=True), per_point=["fa"])
-bar = {"color": "white", "vertical": True, "position_x": 0.88, "position_y": 0.2, "height": 0.6}
+font = {"title_font_size": 34, "label_font_size": 34, "color": "white"}
+bar = {**font, "vertical": True, "position_x": 0.83, "position_y": 0.1, "height": 0.7, "n_labels": 3}
 palette = np.random.default_rng(3).uniform(0.2, 1.0, (len(BUNDLES), 3))
 panels = {
     "orientation": {},
-    "length": {"scalars": "length", "cmap": "plasma", "scalar_bar_args": bar},
+    "length": {"scalars": "length", "cmap": "plasma", "scalar_bar_args": {**bar, "title": "mm"}},
     "FA in each point": {"scalars": "fa", "clim": (0.1, 0.7), "scalar_bar_args": {**bar, "title": "FA"}},
     "bundles": {"scalars": palette[fiblets.per_streamline["bundle"]]},  # a colour per streamline
 }
@@ -31,9 +32,7 @@ plotter.set_background("black", all_renderers=True)
 for index, (title, colours) in enumerate(panels.items()):
     plotter.subplot(*divmod(index, 2))
     plotter.add_fiblets(fiblets, **colours)
-    plotter.add_text(title, font_size=12, color="white")
+    plotter.add_text(title, font_size=22, color="white")
     plotter.view_vector((-1, 0, 0), viewup=(0, 0, 1))
-    plotter.camera.zoom(1.5)
-for scalar_bar in plotter.scalar_bars.values():
-    scalar_bar.SetVerticalTitleSeparation(14)  # off the first number
+    plotter.camera.zoom(1.3)
 plotter.screenshot(folder / "colours.png")

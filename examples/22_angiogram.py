@@ -33,6 +33,6 @@ for index, (title, way) in enumerate(ways.items()):
         actor.ray_occlusion = {"radius": 12.0, "samples": 24}
     elif actor.mode != "composite":  # fading shows which of two peaks is nearer
         actor.depth_cue = {"color": "black", "strength": 0.6}
-    plotter.add_text(title, font_size=12, color="white", position=(20, 20))
-    plotter.camera_position = [(103.0, -286.0, 35.0), (3.0, 0.0, -8.0), (0, 0, 1)]
+    plotter.add_text(title, font_size=18, color="white", position=(20, 10))
+    plotter.camera_position = [(108.0, -302.0, 32.0), (3.0, 0.0, -14.0), (0, 0, 1)]
 plotter.screenshot(folder / "angiogram.png")

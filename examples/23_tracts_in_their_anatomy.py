@@ -23,8 +23,7 @@ brain = as_raycast_volume(sys.argv[2]) if len(sys.argv) > 2 else brain_like(144)
 white, window = float(np.percentile(brain.values[brain.values > 0], 80)), regions.Box((4, 120, -14, 160, 6, 120))
 tracts = brain_streamlines(12_000)
 tracts = tracts[np.concatenate([tracts.groups[name] for name in ("callosum", "corona", "cingulum", "arcuate")])]
-plotter = pv.Plotter(off_screen=True, window_size=(1500, 720), shape=(1, 2), border=False)
-plotter.set_background("black", all_renderers=True)
+plotter = pv.Plotter(off_screen=True, window_size=(1500, 720), shape=(1, 2), border=False, theme=pv.themes.DarkTheme())
 surface = {"mode": "isosurface", "values": 0.5 * white, "color": "#e3cfc0", "smooth": 0.7, "ray_occlusion": True}
 plotter.add_raycast_volume(brain, **surface, show_scalar_bar=False).clip(window, inside=False)
 grey = {"cmap": "gray", "clim": (0.25 * white, 1.25 * white), "opacity": [0, 1, 1, 1], "show_scalar_bar": False}

@@ -1,7 +1,7 @@
 """Inside a volume
 ===============
 
-A head with a part bitten out by a mesh, a box of voxels around a vessel, and a camera inside that vessel.
+A head with a part bitten out by a mesh, the vessels in a box, and a camera inside a vessel.
 
 Run it as ``python examples/24_inside_a_volume.py [FOLDER]``.
 """
@@ -9,7 +9,6 @@ Run it as ``python examples/24_inside_a_volume.py [FOLDER]``.
 import sys
 from pathlib import Path
 
-import numpy as np
 import pyvista as pv
 
 from pvfiblets import regions
@@ -27,9 +26,9 @@ grey = {"cmap": "gray", "clim": (0, 250), "opacity": [0, 0] + [1] * 30, "show_sc
 plotter.add_raycast_volume(head, **grey).clip(regions.Sphere((45, 48, 42), 63.5) - regions.Sphere((45, 48, 42), 61.9))
 plotter.camera_position = [(235, 211, 188), (0, 0, 0), (0, 0, 1)]
 plotter.subplot(1)
-voxels = np.add.outer((way[-3] - tree.affine[:3, 3]) / tree.spacing, (-38, 38)).ravel()
-plotter.add_raycast_volume(tree, **surface, color="#ffc4b4", box=voxels)
-plotter.add_mesh(pv.Box(np.add.outer(way[-3], (-24, 24)).ravel()), style="wireframe", color="gray")
+cube = pv.Cube(center=way[-3], x_length=48, y_length=48, z_length=48)
+plotter.add_raycast_volume(tree, **surface, color="#ffc4b4").clip(cube.bounds)
+plotter.add_mesh(cube, style="wireframe", color="gray")
 plotter.camera_position = [way[-3] + (39, -129, 39), way[-3], (0, 0, 1)]
 plotter.subplot(2)
 plotter.add_raycast_volume(tree, **surface, color="#e8897a").depth_cue = {"color": "black", "range": (4, 45)}

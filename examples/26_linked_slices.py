@@ -30,7 +30,7 @@ workspace.slices.layers[0].below = 15.0  # air would occlude the slices behind i
 most = float(np.percentile(counts.values, 99.0))
 workspace.slices.add(directions, kind="direction", modulate=counts, clim=(0.0, most), below=0.3 * most, opacity=0.5)
 plotter.add_fiblets(fiblets[fiblets.groups["callosum"]], lighting=False)
-workspace.position = (8.0, -24.0, 30.0)
+workspace.position = (-12.0, -24.0, 30.0)
 workspace.add_contours(pv.Sphere(radius=15.0, center=workspace.position), "white")
 plotter.view_isometric()
 plotter.camera.zoom(1.4)

@@ -553,14 +553,14 @@ class FibletSet:
         return table(self, ids, **options)
 
     def end_parcels(self, atlas: Any, names: Mapping[int, str] | None = None) -> npt.NDArray[np.str_]:
-        """Name the two parcels in which each streamline ends; see :func:`pvfiblets.end_parcels`.
+        """Return the names of the two parcels that each streamline connects; see :func:`pvfiblets.end_parcels`.
 
         Parameters
         ----------
         atlas : image
             Whole numbers, 0 for no parcel.
         names : mapping of int to str, optional
-            Of the parcels.
+            Names of the parcels.
 
         Returns
         -------

@@ -37,45 +37,45 @@ def as_spline_tubes(
     source : PolyData, Streamlines, FibletSet, array_like, tuple or SplineTubes
         A PolyData (VTK or PyVista) with lines; a tractogram; one ``(n, 3)`` array in mm for one tube, or a list of
         arrays; ``(points, segments)`` with ``(n_points, 3)`` positions in mm and ``(n_segments, 2)`` point indices.
-        Segments, and line cells when all have two points, are smooth where one follows the other and no third meets
-        them; in whichever order they are listed. Lines of one point become spheres, lines without
-        points tubes without segments. SplineTubes are returned as they are.
+        Two segments (or line cells, if all have two points) form one smooth tube if one starts where the other ends
+        and no third uses that point; the order of the list does not matter. A line of one point becomes a sphere; a
+        line without points becomes a tube without segments. SplineTubes are returned unchanged.
     radius : float, str, array_like or image, optional
         Radius in mm: one for all, the name of a point or line array of the source, ``(n_points,)`` numbers or
-        ``(n_lines,)`` numbers, or an image that has it at the points. By default the point data named in
-        `RADIUS_NAMES`, else 0.5 % of the diagonal of the points' bounds (1 mm where all points are at one place).
+        ``(n_lines,)`` numbers, or an image, sampled at the points. By default the first point array among
+        `RADIUS_NAMES`, else 0.5 % of the diagonal of the points' bounds (1 mm if all points coincide).
     tangents : str or array_like, optional
-        ``(n_points, 3)`` derivatives of the position, or the name of this array in the point data. Points of
-        several lines then stay one node. By default they are computed for each line by itself, so that such points
-        become a node for each line.
+        ``(n_points, 3)`` derivatives of the position, or the name of such a point array. Lines that share a point
+        then share its node. By default derivatives are computed for each line, which gives each line its own node.
     radius_slopes : float, str or array_like, optional
         ``(n_points,)`` derivatives of the radius. Computed by default.
     scalars : str, array_like or image, optional
-        What to keep for colours: the name of point or line data, ``(n_points,)`` numbers, an image that has them,
-        ``(n_points, 3)`` or ``(n_points, 4)`` colours (uint8, or floats 0..1 with `rgb`), or one row for each line.
-        Point values end up in ``values`` under their name, or ``"scalars"``; line values in ``tube_values``.
-        ``"radius"`` needs no array.
+        Values to colour by: the name of a point or line array, ``(n_points,)`` numbers, an image, ``(n_points, 3)``
+        or ``(n_points, 4)`` colours (uint8, or floats 0..1 with `rgb`), or one row for each line. Point values are
+        stored in ``values`` under their name, or ``"scalars"``; line values in ``tube_values``. ``"radius"`` needs
+        no array.
     scalar_slopes : str or array_like, optional
         Derivatives of `scalars`, in the same shape (of colours: of 0..1). Computed by default.
     rgb : bool, optional
-        Whether `scalars` of three or four columns are colours, or vectors to be mapped by their magnitude. By default
-        uint8 columns are colours, and so are arrays whose name ends in ``"_rgb"`` or ``"_rgba"``.
+        True: `scalars` of three or four columns are colours. False: they are vectors, coloured by magnitude. By
+        default uint8 columns are colours, and so are arrays whose names end in ``"_rgb"`` or ``"_rgba"``.
     method : {'finite', 'catmull-rom', 'natural'}, default: 'finite'
-        How derivatives that are not given are found; see :func:`.tangents.derivatives`.
+        Method for missing derivatives: finite differences by length, half the difference of the two neighbours, or
+        natural cubic splines.
     scaled : bool, optional
-        What derivatives are by: True for length (mm/mm, so that unit tangents fit), False for the segment's parameter
-        that runs from 0 to 1 (the paper's t_i: a straight segment's tangents are its chord). By default False where
-        `tangents` are given or the method is ``'catmull-rom'``, else True. Derivatives that are computed follow.
+        True: derivatives are by length (mm/mm; unit tangents fit). False: they are by the segment's parameter from
+        0 to 1 (the paper's t_i; a straight segment's tangents are its chord). By default False if `tangents` are
+        given or the method is ``'catmull-rom'``, else True. It holds for computed derivatives too.
 
     Returns
     -------
     SplineTubes
-        Per-line data of the source is kept as ``tube_values``, and the requested point data as ``values``.
+        Line arrays of the source are its ``tube_values``; `scalars` at points are its ``values``.
 
     Raises
     ------
     TypeError
-        If such a source is not supported, or SplineTubes come with anything else.
+        If `source` has an unsupported type, or SplineTubes come with another argument.
     ValueError
         If there are no lines in a PolyData, an array has the wrong shape, a name is unknown, a radius or derivative
         is not finite, or a radius is negative. The message names array, row, line and value.
@@ -86,7 +86,7 @@ def as_spline_tubes(
     that stands twice in a row in a line is a sharp corner, as in the paper. A point with NaN or infinity ends its line:
     each piece is a tube with the data of the whole, and a warning counts them.
 
-    Arrays for lists of lines may be lists, too: one array for each line.
+    With a list of lines, arguments may be lists too: one array for each line.
 
     Examples
     --------

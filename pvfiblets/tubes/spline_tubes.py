@@ -81,8 +81,8 @@ class SplineTubes:
     points : array_like
         ``(n_nodes, 3)`` float64, mm: node positions, finite.
     segments : array_like
-        ``(n_segments, 2)`` int64: the nodes each segment starts and ends at. A node may be in any number of segments;
-        a segment from a node to itself whose tangent is zero is a sphere.
+        ``(n_segments, 2)`` int64: start and end node of each segment. A node may be in any number of segments.
+        A segment from a node to itself with a zero tangent is a sphere.
     radius : array_like
         ``(n_nodes,)`` float64, mm: finite, 0 or more.
     tangents : array_like
@@ -90,23 +90,22 @@ class SplineTubes:
     radius_slopes : array_like
         ``(n_nodes,)`` float64: derivative of the radius, finite.
     scaled : bool
-        True: derivatives are by length (mm/mm; values per mm), and every segment multiplies them with its chord, the
-        distance between its two nodes. False: derivatives are by the segment's parameter, which runs from 0 to 1 (the
-        paper's t_i).
+        True: derivatives are by length (mm/mm; values per mm). Each segment multiplies them by the distance of its
+        nodes. False: derivatives are by the segment's parameter from 0 to 1 (the paper's t_i).
     tubes : array_like
-        ``(n_segments,)`` int64: which tube each segment belongs to, 0 to ``n_tubes - 1``.
+        ``(n_segments,)`` int64: tube of each segment, 0 to ``n_tubes - 1``.
     n_tubes : int
-        Tubes, those without segments included.
+        Number of tubes, including tubes without segments.
     values : mapping of str to NodeValues, optional
-        Attributes to colour by, each with one row per node.
+        Arrays to colour by, with one row per node.
     tube_values : mapping of str to array, optional
-        ``(n_tubes,)`` or ``(n_tubes, k)`` arrays: values of whole tubes.
+        ``(n_tubes,)`` or ``(n_tubes, k)`` arrays: one row per tube.
 
     Raises
     ------
     ValueError
-        If shapes, node indices or tube indices contradict each other, or a number is not finite or a radius negative;
-        the message names the array and the first bad row.
+        If a shape is wrong, an index is out of range, a number is not finite or a radius is negative; the message
+        names the array and the first bad row.
 
     Examples
     --------
@@ -220,10 +219,9 @@ class SplineTubes:
 
     @cached_property
     def bounds(self) -> Bounds:
-        """(xmin, xmax, ymin, ymax, zmin, zmax) in mm that hold every tube; six NaN where there is no segment.
+        """(xmin, xmax, ymin, ymax, zmin, zmax) in mm, around every tube; six NaN without segments.
 
-        They hold the spheres around the cubics' own Bézier points (a third of the derivatives from the nodes), and so
-        the cubics and every pair of quadratics whose middle points lie nearer to the nodes than that.
+        They enclose the spheres around each cubic's Bézier points, so the drawn tubes lie inside.
         """
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         for first in range(0, self.n_segments, _BLOCK):
@@ -246,11 +244,10 @@ class SplineTubes:
 
     @cached_property
     def joined_ends(self) -> npt.NDArray[np.bool_]:
-        """``(n_segments, 2)`` bool: start and end of each segment, True where it goes on into another.
+        """``(n_segments, 2)`` bool: True if the start, or the end, of a segment continues in another segment.
 
-        That is one that starts at the node at which it ends, or ends at the one at which it starts, or at a node that
-        equals it in all: position, radius and derivatives, so that their surfaces meet smoothly. Segments from a node
-        to itself go nowhere.
+        The two segments share the node, or have two nodes of equal position, radius and derivatives; their surfaces
+        meet smoothly there. False for a segment from a node to itself.
         """
         moving = self.segments[:, 0] != self.segments[:, 1]
         node = self._equal_at_ends()[self.segments]
@@ -284,7 +281,7 @@ class SplineTubes:
         return replace(self, segments=self.segments[kept], tubes=self.tubes[kept])
 
     def subset(self, tubes: npt.ArrayLike) -> SplineTubes:
-        """Return some tubes, in the given order, with their nodes and all values.
+        """Return the chosen tubes, in the given order, with their nodes and values.
 
         Parameters
         ----------
@@ -294,7 +291,7 @@ class SplineTubes:
         Returns
         -------
         SplineTubes
-            Its tube ``i`` is this one's ``tubes[i]``.
+            Tube ``i`` of the result is tube ``tubes[i]`` of this object.
 
         Raises
         ------

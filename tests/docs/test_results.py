@@ -3,12 +3,13 @@
 import json
 import re
 from pathlib import Path
+from statistics import median
 
 import pytest
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 FOLDER = DOCS / "benchmarks"
-PAGE = FOLDER / "README.md"
+PAGE, DETAILS = FOLDER / "README.md", FOLDER / "details.md"
 
 
 def rows(page, title):
@@ -96,3 +97,50 @@ def test_fury_has_the_figures_of_the_record():
     for segments, program, times in record("other-viewers")["fury"]["rows"]:
         cell = table[segments][("FURY", "VTK lines, aliased", "fiblets").index(program)]
         assert [figures(part)[0] for part in cell.split(", ")] == times
+
+
+def test_the_table_of_the_codec_is_that_of_the_record():
+    names = {"fiblets": "by default", "fiblets, look-ahead": "look-ahead", "paper's fiblets": "as the paper"}
+    study = record("report/amd-epyc/report")["studies"][0]
+    noisy = {(one["way"], one["setting"], one["data"]): one for one in study["records"] if one["group"] == "noisy"}
+    usual = {data: one for (way, setting, data), one in noisy.items() if (way, setting) == ("fiblets", "default")}
+    for title, *cells in rows(DETAILS, "noisy tracking"):
+        found = [
+            (one, usual[data])
+            for (way, setting, data), one in noisy.items()
+            if names.get(way, way) in title and setting in ("default", "", None, *re.findall(r"\d+ bits", title))
+        ]
+        assert len(found) == 5, title
+        medians = [
+            median(one["costs"]["size"]["value"] for one, _ in found),
+            *(median(one["errors"][f"{kind} in steps"]["value"] for one, _ in found) for kind in ("max", "mean")),
+            *(median(one["times"][act]["median"] / base["times"][act]["median"] for one, base in found)
+              for act in ("compress", "decompress")),
+        ]  # fmt: skip
+        assert figures(" ".join(cells)) == [pytest.approx(number, rel=0.05) for number in medians], title
+
+
+def test_tubes_have_the_times_of_the_record():
+    text = " ".join(DETAILS.read_text(encoding="utf-8").split())
+    results = [one for one in record("tubes-llvmpipe")["results"] if "ms" in one]
+    times = {(one["set"], one["way"], one["view"]): one["ms"] for one in results}
+    for before, unit, asked in (
+        ("(114,489 segments): ", 1.0, (("brain", "splines"),)),
+        ("30 sides take ", 1.0, (("brain", "tube-30"),)),
+        ("Bundle: ", 1.0, (("bundle", "splines"), ("bundle", "tube-30"))),
+        ("Furball: ", 1000.0, (("furball", "splines"), ("furball", "tube-12"))),
+    ):
+        recorded = [times[*one, view] / unit for one in asked for view in ("far", "close")]
+        written = figures(text.split(before)[1])[: len(recorded)]
+        assert written == [pytest.approx(number, abs=0.05 if unit > 1.0 else 0.5) for number in recorded], before
+
+
+def test_cpu_times_of_frames_are_those_of_the_record():
+    text = " ".join(DETAILS.read_text(encoding="utf-8").split())
+    results = record("frame-cost-llvmpipe")["results"]
+    for chunks, part in ((12, "In 12 chunks (discrete cards) "), (93, "In 93 chunks (integrated cards) ")):
+        slowest = [
+            max(one["ms"] for one in results if one["case"] == case and one["chunks"] == chunks)
+            for case in ("engine", "mapper")
+        ]
+        assert figures(text.split(part)[1])[:2] == [pytest.approx(one, abs=0.006) for one in slowest]

@@ -56,8 +56,9 @@ def test_parcels_at_both_ends(plotter, atlas, tmp_path):
     ends = [(-9, 9), (9, -9), (-9, -3), (9, 30)]
     lines = [np.array([[a, 0.0, -5.0], [b, 3.0, -5.0]]) for a, b in ends] + [np.array([[-9.0, 0, -5], [9, 0, 5]])]
     lines.append(np.zeros((0, 3)))
-    fiblets = pvfiblets.compress(Streamlines.from_list(lines))
+    fiblets = pvfiblets.compress(streamlines := Streamlines.from_list(lines))
     wanted = ["1 - 2", "1 - 2", "1 - 1", "", "", ""]
+    assert pvfiblets.end_parcels(streamlines, atlas).tolist() == wanted
     assert fiblets.end_parcels(atlas).tolist() == wanted
     assert fiblets.end_parcels((np.asarray(atlas.dataobj), atlas.affine)).tolist() == wanted
     nibabel.save(atlas, tmp_path / "atlas.nii.gz")

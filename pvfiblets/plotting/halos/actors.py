@@ -121,12 +121,12 @@ class HaloActor(LineActor):
 
     @property
     def scalars(self) -> str | np.ndarray | None:
-        """What colours the actor; ``None`` for one colour.
+        """Source of the colours; ``None`` for one colour.
 
-        The name of numbers of its source or colours that it was made with, or an array with one number or one
-        colour (3 or 4 columns) per point. Lines also have ``"orientation"`` (the absolute direction
-        as red, green, blue), ``"arc_length"`` (mm from the line's first point) and ``"length"``
-        (mm), and take arrays with a row per line.
+        The name of an array of the source, or an array with one number or one colour (3 or 4
+        columns) per point. Lines also have ``"orientation"`` (the absolute direction as red, green,
+        blue), ``"arc_length"`` (mm from the line's first point) and ``"length"`` (mm), and accept
+        arrays with a row per line.
         """
         return self._choice
 
@@ -141,17 +141,17 @@ class HaloActor(LineActor):
 
     @property
     def look(self) -> HaloStyle:
-        """Every setting below as it is drawn, with the numbers that were measured of the data."""
+        """All settings in use; automatic ones have the values that fit the data."""
         return self._mapper.look
 
     # Filter -------------------------------------------------------------------------------------
 
     @property
     def filter_by(self) -> str | None:
-        """By which numbers ``threshold`` filters; ``None`` shows all, and forgets the threshold.
+        """Numbers that ``threshold`` compares; ``None`` shows all and clears the threshold.
 
-        Set it to a name, as for ``scalars``, to an array of a number per point (``"filter"`` is
-        then their name), or per line, or to an image. Where there is no number (NaN), nothing shows.
+        Set it to a name, as for ``scalars``, to an array with a number per point or per line (its
+        name is then ``"filter"``), or to an image. Parts without a number (NaN) are hidden.
         """
         return self._looks.filter_by
 
@@ -174,7 +174,7 @@ class HaloActor(LineActor):
             ``passes``: name and milliseconds of the last redraw; ``features``: pieces of the
             shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
             their sum; ``points_total``, and of lines ``lines_total`` and ``segments_total``;
-            ``culling``: the one in use, ``None`` before the first picture; ``streamlines``: lines
+            ``culling``: the method in use, ``None`` before the first frame; ``streamlines``: lines
             or points in ``total`` and ``shown``; ``criteria``, ``conditions``, ``groups_shown``, ``clips``.
         """
         report = self._mapper.explain()
@@ -280,7 +280,8 @@ class HaloLineActor(HaloLineSettings, HaloActor):
     def lines(self) -> HaloLines:
         """The drawn data; can be replaced.
 
-        Widths that were not given are measured again. New data need the arrays of the current colours and filters.
+        Automatic widths fit the new data. The new data need the arrays of the current colours and
+        filter: KeyError otherwise.
         """
         return cast("HaloLines", self._held.drawn)
 
@@ -289,7 +290,7 @@ class HaloLineActor(HaloLineSettings, HaloActor):
         self._draw_others(lines)
 
     def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
-        """Return the line at a window pixel, and where along it the pixel lies.
+        """Return the line at a window pixel, and the position along it.
 
         Parameters
         ----------
@@ -299,14 +300,14 @@ class HaloLineActor(HaloLineSettings, HaloActor):
         Returns
         -------
         tuple of (int, float) or None
-            Line, and place along it: the index of the point before plus the fraction of the segment.
-            ``None`` where no line of this actor is within two pixels; halos are none.
+            Index of the line, and position along it: the index of the point before, plus the fraction of
+            the segment. ``None`` if no line of this actor is within two pixels; halos do not count.
         """
         return cast("tuple[int, float] | None", self._mapper.pick_at(x, y))
 
 
 class HaloPointActor(HaloPointSettings, HaloActor):
-    """Points with depth-dependent halos: discs that face the viewer, in cones that lead away from him.
+    """Points with depth-dependent halos: discs that face the viewer, with cone-shaped halos behind them.
 
     Everything of :class:`pyvista.Actor` works. The properties below may be set at any time and take
     effect at the next render. Lengths are mm of the data.
@@ -323,7 +324,8 @@ class HaloPointActor(HaloPointSettings, HaloActor):
     def points(self) -> HaloPoints:
         """The drawn data; can be replaced.
 
-        Sizes that were not given are measured again. New data need the arrays of the current colours and filters.
+        Automatic sizes fit the new data. The new data need the arrays of the current colours and
+        filter: KeyError otherwise.
         """
         return cast("HaloPoints", self._held.drawn)
 
@@ -342,7 +344,7 @@ class HaloPointActor(HaloPointSettings, HaloActor):
         Returns
         -------
         int or None
-            ``None`` where no point of this actor is within two pixels; halos are none.
+            Index of the point; ``None`` if no point of this actor is within two pixels. Halos do not count.
         """
         return cast("int | None", self._mapper.pick_at(x, y))
 

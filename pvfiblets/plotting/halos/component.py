@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     Lines: TypeAlias = pv.PolyData | Streamlines | FibletSet | HaloLines | np.ndarray | list[Any] | tuple[Any, Any]
     LineSource: TypeAlias = str | PathLike[str] | Lines
-    Points: TypeAlias = pv.DataSet | Streamlines | HaloPoints | np.ndarray | list[Any]
+    Points: TypeAlias = pv.DataSet | Streamlines | FibletSet | HaloPoints | np.ndarray | list[Any]
     PointSource: TypeAlias = str | PathLike[str] | Points
 
 
@@ -69,30 +69,32 @@ class HaloLinesComponent(PrintableComponent["HaloLineActor"]):
     ) -> HaloLineActor:
         """Add lines with depth-dependent halos to the scene.
 
-        A line is a strip that faces the viewer: black in the middle, white on both sides, where it
-        bends away from the viewer. So a line cuts a gap into others behind it, the wider the farther
-        they are behind, and none into those beside it.
+        Each line is a strip that faces the viewer: black in the middle, with a white halo on both
+        sides. The halo bends away from the viewer. It hides lines behind its line, and the gap is
+        wider the farther behind they lie; lines beside it stay whole.
 
         Parameters
         ----------
         source : PolyData, Streamlines, FibletSet, array, list of arrays, (points, segments), HaloLines or path
             Lines in mm. One ``(n, 3)`` array is one line.
         scalars : str, array or image, optional
-            What colours the lines, not their halos: the name of data of ``source``, the active scalars of a data set
-            of VTK's by default unless there is a ``color``;
-            ``"orientation"`` (the absolute value of the direction as red, green, blue),
-            ``"arc_length"``, ``"length"``; an array with one number or one colour (3 or 4 columns;
-            floats with ``rgb``) per point or per line; a file of numbers: ``.tsf``, ``.npy``,
-            ``.txt``, ``.csv``; or an image, whose values at the points count.
+            Colours of the lines; halos have ``halo_color``. The name of an array of ``source``;
+            ``"orientation"`` (the absolute direction as red, green, blue), ``"arc_length"`` or
+            ``"length"`` (mm); an array with one number or one colour (3 or 4 columns; floats with
+            ``rgb``) per point or per line; a file of numbers (``.tsf``, ``.npy``, ``.txt``,
+            ``.csv``); or an image, sampled at the points. By default the active scalars of a VTK
+            data set, unless ``color`` is given.
         filter_by : str, array or image, optional
-            What ``threshold`` filters by: the name of numbers per point or line, ``"arc_length"``,
-            ``"length"``, an array, or an image. Where there is no number (NaN), nothing shows.
+            Numbers that ``threshold`` compares: the name of an array per point or line,
+            ``"arc_length"``, ``"length"``, an array, or an image. Parts without a number (NaN) are
+            hidden.
         rgb : bool, optional
-            Whether ``scalars`` of three or four columns are colours, or vectors to be mapped by their magnitude. By
-            default uint8 columns are, and arrays with names that end in ``"_rgb"`` or ``"_rgba"``.
+            True: ``scalars`` of three or four columns are colours. False: they are vectors, coloured by
+            magnitude. By default uint8 columns are colours, and so are arrays whose names end in
+            ``"_rgb"`` or ``"_rgba"``.
         preference : {'point', 'cell'}, default: 'point'
-            Which array a name means that both points and lines (cells) have; the other is called ``"NAME (line)"`` or
-            ``"NAME (point)"``.
+            Meaning of a name that points and lines (cells) share. The other array is then called
+            ``"NAME (line)"`` or ``"NAME (point)"``.
 
         Returns
         -------
@@ -102,11 +104,11 @@ class HaloLinesComponent(PrintableComponent["HaloLineActor"]):
         Raises
         ------
         KeyError
-            If there are no numbers of the name given as ``scalars`` or ``filter_by``.
+            If no array has the name given as ``scalars`` or ``filter_by``.
         TypeError
-            If ``source`` is of an unknown kind.
+            If ``source`` has an unsupported type.
         ValueError
-            If an argument has no meaning; the message names it and its value.
+            If an argument is invalid; the message names it and its value.
 
         Notes
         -----
@@ -124,7 +126,7 @@ class HaloLinesComponent(PrintableComponent["HaloLineActor"]):
         >>> actor = pl.add_halo_lines(np.transpose(knot), line_width=0.05, strip_width=0.4, tapering=False)
         >>> actor.max_displacement = 1.0
 
-        Only high values; lines taper below:
+        Hide values below 0; lines taper there:
 
         >>> actor.filter_by = np.sin(3 * t)
         >>> actor.threshold = 0.0
@@ -181,23 +183,26 @@ class HaloPointsComponent(PrintableComponent["HaloPointActor"]):
     ) -> HaloPointActor:
         """Add points with depth-dependent halos to the scene.
 
-        A point is a disc that faces the viewer, in a cone that leads away from him: it hides others
-        close to it on the screen that are farther behind, and none beside it. So a dense cloud of a
-        surface shows where one part of it is in front of another.
+        Each point is a disc that faces the viewer, with a cone-shaped halo that leads away from the
+        viewer. The halo hides points farther behind and leaves those beside it. So a dense cloud of
+        surface points shows which part of the surface is in front.
 
         Parameters
         ----------
-        source : DataSet, array, Streamlines, HaloPoints or path
-            Points in mm: of any dataset, or an ``(n, 3)`` array.
+        source : DataSet, array, Streamlines, FibletSet, HaloPoints or path
+            Points in mm: those of a data set or tractogram, or an ``(n, 3)`` array.
         scalars : str, array or image, optional
-            What colours the points, not their halos: the name of point data of ``source``, the active scalars of a
-            data set of VTK's by default unless there is a ``color``; or an array with one number or one colour (3 or 4
-            columns; floats with ``rgb``) per point; or an image.
+            Colours of the points; halos have ``halo_color``. The name of an array of ``source``; an
+            array with one number or one colour (3 or 4 columns; floats with ``rgb``) per point; or an
+            image, sampled at the points. By default the active scalars of a VTK data set, unless
+            ``color`` is given.
         filter_by : str, array or image, optional
-            What ``threshold`` filters by: the name of numbers at points, an array, or an image. Points without
-            a number (NaN) do not show.
-        cmap, clim, n_colors, log_scale, nan_color, below_color, above_color, flip_scalars, rgb
-            As for lines (``plotter.add_halo_lines``).
+            Numbers that ``threshold`` compares: the name of an array, an array, or an image. Points
+            without a number (NaN) are hidden.
+        rgb : bool, optional
+            True: ``scalars`` of three or four columns are colours. False: they are vectors, coloured by
+            magnitude. By default uint8 columns are colours, and so are arrays whose names end in
+            ``"_rgb"`` or ``"_rgba"``.
 
         Returns
         -------
@@ -207,11 +212,11 @@ class HaloPointsComponent(PrintableComponent["HaloPointActor"]):
         Raises
         ------
         KeyError
-            If there are no numbers of the name given as ``scalars`` or ``filter_by``.
+            If no array has the name given as ``scalars`` or ``filter_by``.
         TypeError
-            If ``source`` is of an unknown kind.
+            If ``source`` has an unsupported type.
         ValueError
-            If an argument has no meaning; the message names it and its value.
+            If an argument is invalid; the message names it and its value.
 
         Notes
         -----

@@ -85,7 +85,7 @@ class HaloSettings(Settings):
     color: Setting[Any] = Setting(
         None,
         "One colour for all; by default black on a light background and white on a dark one.\n\n"
-        "Setting it switches scalars off; ``None`` sets the default, see ``light_on_dark``.",
+        "Setting it turns scalars off. ``None`` sets the default, see ``light_on_dark``.",
         argument="One colour for all; by default black on a light background and white on a dark one. ``scalars`` "
         "override it.",
         kind=shared.COLOR_LIKE,
@@ -95,17 +95,17 @@ class HaloSettings(Settings):
     halo_color: Setting[Any] = Setting(
         None,
         "Colour of the halos; by default the background's.\n\n"
-        '``"background"``: that of the renderer, be it a gradient from below to above. ``None`` sets\n'
-        "the default, see ``light_on_dark``.",
+        '``"background"``: the renderer\'s background, also if it is a gradient. ``None`` sets the\n'
+        "default, see ``light_on_dark``.",
         kind=shared.COLOR_LIKE,
         header='color-like or "background", optional',
         where=OWN,
     )
     light_on_dark: Setting[bool | None] = Setting(
         None,
-        "``True``: white in black halos; ``False``: black in white ones; explicit colours stay.\n\n"
-        "``None``: black on a light background and white on a dark one, in halos of the background's\n"
-        "colour, whenever the background changes.",
+        "``True``: white with black halos. ``False``: black with white halos. Explicit colours stay.\n\n"
+        "``None`` follows the background: black on a light one and white on a dark one, with halos of\n"
+        "its colour.",
         kind="bool | None",
         where=OWN,
         check=lambda name, value: None if value is None else truth(name, value),
@@ -124,7 +124,7 @@ class HaloSettings(Settings):
     lighting = shared.lighting("Shade by the scene's lights.", False)
     smooth: Setting[bool] = Setting(
         True,
-        "Whether lines and points blend into their halos over a pixel.",
+        "Whether the edge of a line or point blends into its halo over one pixel.",
         kind="bool",
         where=LOOKS,
     )

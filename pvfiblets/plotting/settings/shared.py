@@ -240,9 +240,9 @@ def lighting(what: str, default: bool | None) -> Setting[bool]:
 AMBIENT_OCCLUSION: Setting[dict[str, Any] | bool] = Setting(
     False,
     "Darkness where other geometry occludes a line or tube.\n\n"
-    "``radius`` (mm): largest distance of darkening geometry; ``None``, the default, is 16 times the\n"
-    "distance between lines, at least 8 pixels, and at most a 20th of the data's diagonal, which it\n"
-    "is of tubes. ``samples`` (16): pixels looked at around each. ``strength`` (1.0): 0 to 1.",
+    "``radius`` (mm): largest distance of occluding geometry. ``None``, the default: 16 times the\n"
+    "distance between lines, at least 8 pixels, at most a 20th of the data's diagonal; for tubes a\n"
+    "20th of it. ``samples`` (16): pixels read around each pixel. ``strength`` (1.0): 0 to 1.",
     argument=False,
     where=Effect("pvfiblets.mappers.effects.shading:AmbientOcclusion"),
     row=Row("Ambient occlusion", "Darken occluded places.", "Shading"),

@@ -51,11 +51,11 @@ class TubeActor(TubeSettings, LineActor):
     settings : mapping, optional
         Arguments of ``plotter.add_spline_tubes`` that are settings, by name.
     name : str, optional
-        Under which the plotter knows the actor.
+        Name of the actor in the plotter.
     theme : pyvista theme, optional
-        Gives what is not given.
+        Defaults of omitted settings.
     data : SourceData, optional
-        All that criteria may name besides what the tubes have.
+        More arrays that criteria and scalars may name.
 
     Notes
     -----
@@ -117,12 +117,12 @@ class TubeActor(TubeSettings, LineActor):
 
     @property
     def scalars(self) -> str | np.ndarray | None:
-        """What colours the actor; ``None`` for one colour.
+        """Source of the colours; ``None`` for one colour.
 
-        The name of ``tubes.values``, ``tubes.tube_values`` or numbers of the source; ``"radius"``, ``"arc_length"`` (mm
-        from the tube's first node), ``"length"`` (mm, of the whole tube), ``"orientation"`` (the
-        absolute direction as red, green, blue); or an array with one number or one colour (3 or 4
-        columns) per node or per tube.
+        A name in ``tubes.values``, ``tubes.tube_values`` or of an array of the source; ``"radius"``
+        (mm), ``"arc_length"`` (mm from the tube's first node), ``"length"`` (mm, of the whole tube),
+        ``"orientation"`` (the absolute direction as red, green, blue); or an array with one number or
+        one colour (3 or 4 columns) per node or per tube.
         """
         return self._choice
 
@@ -148,7 +148,7 @@ class TubeActor(TubeSettings, LineActor):
             shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
             their sum; ``tubes_total``, ``segments_total``; ``primitives``: triangles of the last
             redraw without culling, 0 before the first; ``silhouettes``, ``solver``, ``iterations``,
-            ``culling``: those in use, ``None`` before the first picture; ``streamlines``: tubes in
+            ``culling``: those in use, ``None`` before the first frame; ``streamlines``: tubes in
             ``total`` and ``shown``; ``criteria``, ``conditions``, ``groups_shown``, ``clips``.
         """
         report = self._mapper.explain()
@@ -169,7 +169,7 @@ class TubeActor(TubeSettings, LineActor):
         }
 
     def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
-        """Return the segment at a window pixel, and where along it the pixel lies.
+        """Return the segment at a window pixel, and the position along it.
 
         Parameters
         ----------
@@ -179,9 +179,8 @@ class TubeActor(TubeSettings, LineActor):
         Returns
         -------
         tuple of (int, float) or None
-            Row of ``tubes.segments``, and the segment's parameter from 0 to 1 whose sphere the
-            pixel shows; ``tubes.tubes`` says which tube the segment belongs to. ``None`` where no
-            tube of this actor was drawn.
+            Row of ``tubes.segments``, and the segment's parameter, from 0 to 1, at the visible surface.
+            ``tubes.tubes[row]`` is the segment's tube. ``None`` if the pixel shows no tube of this actor.
         """
         return self._mapper.pick_at(x, y)
 

@@ -73,42 +73,43 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
     ) -> TubeActor:
         """Add tubes of varying radius around Hermite splines to the scene.
 
-        Each pixel shows the point at which its ray enters the tube: there is no mesh, and so no
-        facets however near the camera comes. Tubes cut into each other and into meshes.
+        Each pixel shows the point at which its ray enters the tube. There is no mesh, so no facets
+        appear at any distance. Tubes intersect each other and meshes.
 
         Parameters
         ----------
         source : PolyData, Streamlines, array, list of arrays, (points, segments), SplineTubes, FibletSet or path
-            Lines whose points are the nodes of splines, in mm. One ``(n, 3)`` array is one tube; a
+            Lines in mm; their points are the nodes of the splines. One ``(n, 3)`` array is one tube. A
             line of one point is a ball.
         radius : float, str, array or image, optional
-            Radius in mm: one for all, the name of data of ``source``, a number per point or
-            per line, or an image that has it at the points. By default the point data
-            ``"radius"`` if there is such, else half a percent of the diagonal of the bounds.
+            Radius in mm: one for all, the name of an array of ``source``, a number per point or per
+            line, or an image, sampled at the points. By default the point array ``"radius"``,
+            ``"Radius"`` or ``"MaximumInscribedSphereRadius"`` (VMTK), else 0.5 % of the diagonal of the
+            bounds.
         scalars : str, array or image, optional
-            What colours the tubes: the name of data of ``source``, the active scalars of a data set of VTK's by
-            default unless there is a ``color``; ``"radius"``, ``"arc_length"``,
-            ``"length"``, or ``"orientation"`` (the absolute value of the direction as red, green,
-            blue); an array with one number or one colour (3 or 4 columns; floats with ``rgb``)
-            per point or per line; a file of numbers: ``.tsf``, ``.npy``, ``.txt``, ``.csv``; or an
-            image, whose values at the points count.
+            Colours of the tubes: the name of an array of ``source``; ``"radius"``, ``"arc_length"``,
+            ``"length"`` (mm) or ``"orientation"`` (the absolute direction as red, green, blue); an array
+            with one number or one colour (3 or 4 columns; floats with ``rgb``) per point or per line; a
+            file of numbers (``.tsf``, ``.npy``, ``.txt``, ``.csv``); or an image, sampled at the points.
+            By default the active scalars of a VTK data set, unless ``color`` is given.
         preference : {'point', 'cell'}, default: 'point'
-            Which array a name means that both points and lines (cells) have, here and in criteria; the other is
-            called ``"NAME (line)"`` or ``"NAME (point)"``.
+            Meaning of a name that points and lines (cells) share, here and in criteria. The other array
+            is then called ``"NAME (line)"`` or ``"NAME (point)"``.
         tangents : str or array, optional
-            ``(n_points, 3)`` derivatives of the positions, or the name of point data. By
-            default they are found from the points.
+            ``(n_points, 3)`` derivatives of the positions, or the name of a point array. By default
+            ``method`` computes them from the points.
         method : {"finite", "catmull-rom", "natural"}, default: "finite"
-            How derivatives that are not given are found: by differences with regard to length,
-            by differences of the neighbours, or as natural cubic splines, which also bend smoothly.
+            Method for missing derivatives: finite differences by length, half the difference of the two
+            neighbours, or natural cubic splines, whose curvature is continuous.
         radius_slopes, scalar_slopes : str or array, optional
-            Derivatives of radius and scalars at the points; found like the tangents by default.
+            Derivatives of radius and scalars at the points. By default ``method`` computes them.
         scaled : bool, optional
-            Whether derivatives are by length (mm/mm), instead of by each segment's parameter
-            from 0 to 1. By default by parameter where ``tangents`` are given, else by length.
+            True: derivatives are by length (mm/mm). False: they are by the segment's parameter, from 0
+            to 1. By default False if ``tangents`` are given or ``method`` is ``"catmull-rom"``, else True.
         rgb : bool, optional
-            Whether ``scalars`` of three or four columns are colours, or vectors to be mapped by their magnitude. By
-            default uint8 columns are, and arrays with names that end in ``"_rgb"`` or ``"_rgba"``.
+            True: ``scalars`` of three or four columns are colours. False: they are vectors, coloured by
+            magnitude. By default uint8 columns are colours, and so are arrays whose names end in
+            ``"_rgb"`` or ``"_rgba"``.
 
         Returns
         -------
@@ -118,11 +119,12 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         Raises
         ------
         KeyError
-            If there is no array of the name given as ``scalars``.
+            If no array has the name given as ``scalars``.
         TypeError
-            If ``source`` is of an unknown kind.
+            If ``source`` has an unsupported type.
         ValueError
-            If an argument has no meaning; the message names the array, the row and the value.
+            If an argument is invalid, or no array has the name given as ``radius``, ``tangents`` or a
+            slope; the message names the array, the row and the value.
 
         Notes
         -----
@@ -130,7 +132,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
 
         Examples
         --------
-        A spring whose wire thickens, coloured by how thick it is:
+        A spring of growing thickness, coloured by its radius:
 
         >>> import numpy as np
         >>> import pyvista as pv
@@ -142,7 +144,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         >>> actor.tubes.n_segments
         59
 
-        Few points make a smooth tube; with derivatives of your own it goes where you say:
+        Two points with explicit tangents make a curved tube:
 
         >>> nodes, slopes = np.array([(0, 0, 0), (10, 0, 0)]), np.array([(0, 20, 0), (0, 20, 0)])
         >>> actor = pl.add_spline_tubes(nodes, tangents=slopes, radius=[1, 2], color="tomato")

@@ -37,7 +37,7 @@ class TubeSettings(Settings):
     depth_cue = shared.DEPTH_CUE
     silhouette: Setting[dict[str, Any] | bool] = Setting(
         False,
-        "An outline around tubes: ``True`` for all in white, a dict of other settings, or ``False``.\n\n"
+        "An outline around tubes: ``True`` for all in white, ``False`` for none, or a dict.\n\n"
         '``color`` (``"white"``); ``width`` (2.0): pixels, 1 to 16; ``tubes`` (``None``): numbers of the\n'
         "outlined tubes, or a mask ``(n_tubes,)``; ``None`` for all.",
         argument=False,
@@ -53,14 +53,14 @@ class TubeSettings(Settings):
     )
     silhouettes: Setting[str] = Setting(
         "auto",
-        "Shapes that select the pixels of rays; the image is the same.",
+        "Shapes that bound the tubes on the screen: their pixels cast rays. The image is the same.",
         kind="str",
         choices=("auto", "rectangles", "boxes", "pulled-boxes"),
         where=OPTIONS,
     )
     solver: Setting[str] = Setting(
         "auto",
-        "Search for the first point on a ray; the paper bisects.",
+        "Root finder for the first hit on a ray. The paper uses bisection.",
         kind="str",
         choices=("auto", "illinois", "newton", "itp", "bisection"),
         where=OPTIONS,
@@ -68,7 +68,7 @@ class TubeSettings(Settings):
     )
     iterations: Setting[int | None] = Setting(
         None,
-        "Most steps of one search; ``None`` for the solver's own number.",
+        "Most steps of the solver per ray; ``None`` for the solver's default.",
         kind="int | None",
         where=OPTIONS,
     )

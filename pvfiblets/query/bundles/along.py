@@ -18,7 +18,6 @@ from ...streamlines import Streamlines
 from ...support.ragged import blocks
 from ...support.real_numbers import real_numbers
 from ..measures.chunks import without_groups
-from .resampled import check_count
 from .tract_profile import as_line, bundle_lines, resampled_lines, runs_backwards
 
 if TYPE_CHECKING:
@@ -36,36 +35,41 @@ CHUNK = 1 << 20  # points decoded, or places resampled, together
 def values_along(
     data: FibletSet | Streamlines, ids: Any, values: npt.ArrayLike, *, orient_by: npt.ArrayLike | None = None
 ) -> Floats:
-    """Give each point of a bundle the value of its position along the bundle.
+    """Return for each point of a bundle the value of its position along the bundle.
 
     Parameters
     ----------
     data : FibletSet or Streamlines
+        The tractogram.
     ids : array_like, slice, Bundle, Cluster or str
         The bundle's streamlines, or the name of a group.
     values : array_like
-        ``(n,)`` numbers at positions of equal arc length from the begin of the bundle to its end, as
-        :func:`tract_profile` has them. NaN for none.
+        ``(n,)`` numbers at equal steps of arc length from the bundle's start to its end, such as the ``mean`` of
+        :func:`tract_profile`; NaN for no value.
     orient_by : array_like, optional
-        ``(m, 3)`` mm: a line that all streamlines are turned to run along; by default the first of the bundle.
+        ``(m, 3)`` mm: a line; streamlines that run against it are reversed. By default the first of the bundle.
 
     Returns
     -------
     numpy.ndarray
-        ``(n_points,)`` float64: linear between positions. A point whose nearest position has no value is NaN, and so
-        are points of other streamlines.
+        ``(n_points,)`` float64, interpolated linearly. NaN for points whose nearest position has no value, and for
+        points of other streamlines.
 
     Raises
     ------
     KeyError
-        If there is no such group.
+        If no group has that name.
+    IndexError
+        If a streamline is out of range.
     ValueError
-        If the values are not at least two numbers.
+        If `values` are not two or more numbers.
     """
     numbers = real_numbers(values, "values along a bundle")
     if numbers.ndim != 1:
         raise ValueError(f"values along a bundle have the shape {numbers.shape}; give one number for each position")
-    n = check_count(len(numbers))
+    n = len(numbers)
+    if n < 2:
+        raise ValueError(f"values along a bundle have {n} numbers; give 2 or more, the first and last for its ends")
     chosen = select_streamlines(len(data), bundle_lines(data, ids))
     offsets = np.asarray(data.offsets if isinstance(data, Streamlines) else data.offsets())
     counts = np.diff(offsets)

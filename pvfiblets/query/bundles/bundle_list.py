@@ -1,8 +1,8 @@
-"""The bundles of a set as one ordered list that can be edited: its groups, with a colour each, shown or not.
+"""The bundles of a tractogram as an editable list: its groups, each with a colour and a visibility.
 
-A bundle *is* a group of the set, so changes made here are saved in ``.fiblets`` and ``.trx`` files, colour by
-``scalars="group"`` and is chosen by ``groups_shown``. Colour and visibility are data of the group (``per_group``):
-``color``, three uint8, and ``visible``, one uint8 that a hidden bundle has.
+A bundle *is* a group, so changes are saved in ``.fiblets`` and ``.trx`` files, and ``scalars="group"`` and
+``groups_shown`` use them. Colour and visibility are data of the group (``per_group``): ``color``, three uint8, and
+``visible``, one uint8 that only hidden bundles have.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Bundle:
 
     @property
     def name(self) -> str:
-        """Name; setting it renames the bundle."""
+        """Name of the bundle; setting it renames the group."""
         return self._name
 
     @name.setter
@@ -79,7 +79,7 @@ class Bundle:
 
     @property
     def visible(self) -> bool:
-        """Whether it is shown."""
+        """Whether the bundle is visible."""
         return self._name not in hidden_groups(self._bundles.data.per_group)
 
     @visible.setter
@@ -88,12 +88,12 @@ class Bundle:
 
 
 class Bundles:
-    """The groups of a set as an ordered list.
+    """The groups of a tractogram as an ordered, editable list.
 
     Parameters
     ----------
     data : FibletSet or Streamlines
-        The list reads and changes its ``groups`` and ``per_group``.
+        Its ``groups`` and ``per_group`` are read and changed in place.
     on_change : callable, optional
         Called after each change, without arguments.
     """
@@ -153,15 +153,18 @@ class Bundles:
         Parameters
         ----------
         name : str
-            Of no other bundle.
+            A new name.
         ids : array_like, slice, Predicate, Similar, Cluster or Bundle
             Its streamlines: numbers, a mask, a query's result, or a condition such as ``regions.passes(region)``.
         color : color-like, optional
+            By default a distinct colour by its place in the list.
         visible : bool, default: True
+            Whether the bundle is visible.
 
         Returns
         -------
         Bundle
+            The new bundle.
 
         Raises
         ------
@@ -218,14 +221,23 @@ class Bundles:
         Parameters
         ----------
         names : iterable of str
+            Bundles to merge.
         into : str
-            Name of the result, which takes the place and colour of the first of them; it may be one of `names`.
+            Name of the result; it may be one of `names`. The result has the place and colour of the first.
         keep : bool, default: False
-            Keep the bundles that were joined, and put the result at the end.
+            Keep the merged bundles, and add the result at the end.
 
         Returns
         -------
         Bundle
+            The result.
+
+        Raises
+        ------
+        KeyError
+            If no bundle has one of the names.
+        ValueError
+            If `names` is empty, or another bundle is called `into`.
         """
         parts = [self._known(name) for name in names]
         if not parts:
@@ -255,13 +267,23 @@ class Bundles:
         Parameters
         ----------
         name : str
+            Bundle to reduce.
         others : str or iterable of str
+            Bundles whose streamlines are removed.
         into : str, optional
-            A new bundle for the result; without it, the bundle itself is changed.
+            Name of a new bundle for the result. By default the bundle itself is changed.
 
         Returns
         -------
         Bundle
+            The result.
+
+        Raises
+        ------
+        KeyError
+            If no bundle has one of the names.
+        ValueError
+            If a bundle `into` exists.
         """
         left = self.ids(name)
         for other in [others] if isinstance(others, str) else others:
@@ -314,13 +336,13 @@ class Bundles:
     # --------------------------------------------------------------------------------------------------------- files
 
     def export(self, path: str | os.PathLike[str], *, suffix: str = ".tck", hidden: bool = True) -> list[Path]:
-        """Write the bundles: one file each, or one file with groups.
+        """Write the bundles to one file each, or to one file with groups.
 
         Parameters
         ----------
         path : str or PathLike
-            A file with the suffix of a format that keeps groups (``.trx``, ``.fiblets``) gets all streamlines that
-            are in a bundle. Anything else is a folder, made if need be, for a file of each bundle.
+            A ``.trx`` or ``.fiblets`` file, which keeps groups, receives all streamlines that are in a bundle. An
+            existing folder, or a path without a suffix, receives one file per bundle; it is created if missing.
         suffix : str, default: ".tck"
             Format of the files in a folder.
         hidden : bool, default: True
@@ -329,14 +351,14 @@ class Bundles:
         Returns
         -------
         list of Path
-            What was written.
+            The written files.
 
         Raises
         ------
         ValueError
-            If there is no bundle, or a format of one file keeps no groups.
+            If there is no bundle to write, or the file's format keeps no groups.
         UnknownFormatError
-            If no format that can be written has this suffix.
+            If no writable format has this suffix.
         """
         from ...formats import registry
 

@@ -39,7 +39,7 @@ class Cluster:
     ids : numpy.ndarray
         ``(k,)`` int64, rising.
     centroid : numpy.ndarray
-        ``(n_points, 3)`` float32 mm: the mean of its streamlines, each turned to run as the first of them.
+        ``(n_points, 3)`` float32 mm: the mean of its streamlines, oriented like the first.
     """
 
     number: int
@@ -69,13 +69,13 @@ class Clusters:
     Attributes
     ----------
     labels : numpy.ndarray
-        ``(n_streamlines,)`` int32: number of each one's cluster, or -1.
+        ``(n_streamlines,)`` int32: index of each streamline's cluster, or -1.
     counts : numpy.ndarray
-        ``(n_clusters,)`` int64.
+        ``(n_clusters,)`` int64: streamlines of each cluster.
     centroids : numpy.ndarray
-        ``(n_clusters, n_points, 3)`` float32 mm.
+        ``(n_clusters, n_points, 3)`` float32 mm: mean line of each cluster.
     threshold : float
-        mm.
+        Distance at which a streamline starts a new cluster, mm.
     """
 
     labels: npt.NDArray[np.int32]
@@ -124,12 +124,12 @@ class Clusters:
         return found
 
     def by_size(self, at_least: int = 1) -> Clusters:
-        """Return the clusters of at least a number of streamlines, the largest first.
+        """Return the clusters sorted by size, largest first.
 
         Parameters
         ----------
         at_least : int, default: 1
-            Smaller clusters are dropped; their streamlines are in no cluster.
+            Clusters with fewer streamlines are dropped; their streamlines get the label -1.
         """
         kept = np.flatnonzero(self.counts >= at_least)
         kept = kept[np.argsort(-self.counts[kept], kind="stable")]
@@ -143,22 +143,22 @@ class Clusters:
         Parameters
         ----------
         name : str, default: "cluster {}"
-            Takes a number from 1.
+            Template of the names; ``{}`` becomes 1, 2, and so on.
         at_least : int, default: 1
-            Least number of streamlines of a cluster.
+            Clusters with fewer streamlines are dropped.
         """
         return {name.format(cluster.number + 1): cluster.ids for cluster in self.by_size(at_least)}
 
     def colors(self) -> npt.NDArray[np.uint8]:
         """Return a colour for each streamline, ``(n_streamlines, 3)`` uint8, for ``scalars=``; grey outside clusters.
 
-        Clusters of following numbers have colours that are far apart.
+        Successive clusters have distinct colours.
         """
         table = np.concatenate([np.round(distinct_colours(len(self)) * 255.0), [[128.0] * 3]]).astype(np.uint8)
         return table[self.labels]
 
     def lines(self) -> Streamlines:
-        """Return the centroids as streamlines, each with the number of its cluster's as ``count``."""
+        """Return the centroids as streamlines; ``count`` holds the size of each cluster."""
         n, m = self.centroids.shape[:2]
         return Streamlines(
             self.centroids.reshape(-1, 3), m * np.arange(n + 1), per_streamline={"count": np.array(self.counts)}
@@ -179,12 +179,13 @@ def clusters(
     Parameters
     ----------
     data : FibletSet or Streamlines
+        The tractogram.
     threshold : float, default: 10.0
-        mm: a streamline with a larger MDF distance from the mean line of every cluster begins a new cluster.
+        mm: a streamline farther than this (MDF distance) from the mean line of every cluster starts a new cluster.
     n_points : int, default: 12
         Number of points to which streamlines are resampled, at equal arc length.
     max_clusters : int, optional
-        At this number of clusters, a streamline joins the nearest one at any distance.
+        Once there are this many clusters, streamlines join the nearest one at any distance.
     ids : array_like, optional
         Streamlines to cluster, in this order; by default all, in their own order.
     progress : bool or callable
@@ -194,18 +195,18 @@ def clusters(
     Returns
     -------
     Clusters
-        In the order in which they were begun. Streamlines without points are in no cluster.
+        Clusters in the order of their first streamlines. Streamlines without points have the label -1.
 
     Raises
     ------
     ValueError
-        If a number has no meaning.
+        If a number is out of range, or `ids` repeat a streamline.
     IndexError
         If a streamline is out of range.
 
     Notes
     -----
-    The same as dipy's ``QuickBundles(threshold).cluster(streamlines)``, in its arithmetic up to the order of sums.
+    The result equals dipy's ``QuickBundles(threshold).cluster(streamlines)`` up to rounding.
     """
     from .similarity_kernels import add_to_clusters
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import Any
 
@@ -38,16 +39,15 @@ def hex_colour(parts: Iterable[float]) -> str:
 def as_colour(given: Any) -> tuple[float, float, float]:
     """Return a colour as red, green, blue from 0 to 1."""
     if isinstance(given, str):
-        text = given.lstrip("#")
-        if given.startswith("#") and len(text) == 6:
-            try:
-                parts = [int(text[i : i + 2], 16) / 255.0 for i in (0, 2, 4)]
-            except ValueError:
-                raise ValueError(f"{given!r} is no colour; give '#rrggbb', a name, or three numbers") from None
-            return parts[0], parts[1], parts[2]
-        from pyvista import Color
+        try:
+            if re.fullmatch("#.{6}", given):  # PyVista takes longer to load
+                parts = [int(given[i : i + 2], 16) / 255.0 for i in (1, 3, 5)]
+                return parts[0], parts[1], parts[2]
+            from pyvista import Color
 
-        red, green, blue = Color(given).float_rgb
+            red, green, blue = Color(given).float_rgb
+        except ValueError:
+            raise ValueError(f"{given!r} is no colour; give '#rrggbb', a name, or three numbers") from None
         return float(red), float(green), float(blue)
     values = np.asarray(given)
     whole = values.dtype.kind in "iu"

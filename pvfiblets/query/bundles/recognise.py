@@ -1,8 +1,8 @@
-"""Bundles recognised by models of them: RecoBundles, where dipy is installed.
+"""Recognition of bundles by models (RecoBundles); needs dipy.
 
 Source: Garyfallidis et al., "Recognition of white matter bundles using local and global streamline-based registration
-and clustering", NeuroImage 170 (2018) 283-295. dipy does it; this module reads the models, decodes the streamlines, and
-gives back which they are.
+and clustering", NeuroImage 170 (2018) 283-295. dipy computes it; this module reads the models and decodes the
+streamlines.
 """
 
 from __future__ import annotations
@@ -40,30 +40,30 @@ def recognise(
     seed: int = 0,
     progress: Progress = False,
 ) -> dict[str, Ints]:
-    """Recognise bundles by models of them.
+    """Find the streamlines of known bundles in a whole brain (RecoBundles).
 
     Parameters
     ----------
     data : FibletSet or Streamlines
-        A whole brain in the space of the models, roughly: aligned as ``dipy_slr`` or a registration of the brains does.
+        A whole brain, roughly aligned with the models: by ``dipy_slr`` or a registration of the brains.
     models : path or dict
-        A folder of tractograms, one for each bundle, whose names are the bundles'; or streamlines by name.
+        A folder of tractograms, one for each bundle and named after it; or streamlines by name.
     model_threshold : float, default: 5.0
-        mm: clusters of the model.
+        Clustering threshold of the model, mm.
     reduction_threshold : float, default: 15.0
         mm: clusters of the brain farther than this from the model's clusters are skipped.
     pruning_threshold : float, default: 10.0
         mm: streamlines farther than this from the aligned model are omitted.
     align : bool, default: True
-        First align the searched streamlines with the model.
+        Align the searched streamlines with the model first.
     refine : bool, default: True
-        Search again, beginning with the result.
+        Search a second time, starting from the first result.
     cluster_threshold : float, default: 15.0
-        mm: clusters of the whole brain.
+        Clustering threshold of the whole brain, mm.
     n_points : int, default: 20
-        To which streamlines are resampled.
+        Number of points to which streamlines are resampled.
     seed : int, default: 0
-        Of random choices.
+        Seed of the random numbers.
     progress : bool or callable
         Show a progress bar; or call this with the current step and its share of the work, from 0 to 1, before each
         model. An exception raised in it ends the work.
@@ -71,21 +71,21 @@ def recognise(
     Returns
     -------
     dict of str to numpy.ndarray
-        ``(k,)`` int64 streamlines of each model's bundle, rising; empty where none was recognised. Takes the place of
-        groups: ``fiblets.bundles.add_all(found)``.
+        ``(k,)`` int64 streamlines of each bundle, rising; empty if none was found. Add them as groups with
+        ``fiblets.bundles.add_all(found)``.
 
     Raises
     ------
     ImportError
         If dipy is not installed.
     FileNotFoundError, NotADirectoryError
-        If there is no such folder.
+        If the folder does not exist, or is a file.
     ValueError
-        If it holds no tractogram, a model has fewer than 5 streamlines, or a number has no meaning.
+        If the folder holds no tractogram, a model has fewer than 5 streamlines, or a number is out of range.
 
     Notes
     -----
-    dipy needs the points themselves: twelve bytes for each, and twelve for its own copy.
+    All points are decoded: memory for 12 bytes a point, and for dipy's copy of the same size.
     """
     try:
         from dipy.segment.bundles import RecoBundles

@@ -22,10 +22,10 @@ Ints = npt.NDArray[np.int64]
 CHUNK = 1 << 20  # points decoded together: 12 MB
 
 
-def check_count(n_points: int) -> int:
-    """Return how many points streamlines are resampled to, or raise a ValueError."""
+def check_count(n_points: int, name: str = "n_points") -> int:
+    """Return the number of points of a resampled streamline, or raise a ValueError that names it."""
     if isinstance(n_points, bool) or int(n_points) != n_points or n_points < 2:
-        raise ValueError(f"n_points is {n_points!r}; give a whole number of 2 or more")
+        raise ValueError(f"{name} is {n_points!r}; give a whole number of 2 or more")
     return int(n_points)
 
 

@@ -1,4 +1,4 @@
-"""More like this: streamlines whose course is near that of some others."""
+"""Streamlines similar to given ones."""
 
 from __future__ import annotations
 
@@ -82,10 +82,10 @@ def similar(
     Parameters
     ----------
     data : FibletSet or Streamlines
-        A set is decoded a chunk at a time.
+        The tractogram to search. A FibletSet is decoded in chunks.
     like : array_like, Streamlines or list of array_like
-        The others: numbers of streamlines (or a mask, a slice) of `data`; or lines of their own: ``Streamlines``, an
-        array ``(n, 3)`` or a list of them, mm.
+        The given lines: numbers of streamlines of `data` (or a mask or slice), or new lines in mm: ``Streamlines``, an
+        ``(n, 3)`` array or a list of such arrays.
     distance : float, default: 10.0
         mm: largest MDF distance from the nearest given line.
     n_points : int, default: 12
@@ -99,14 +99,14 @@ def similar(
     Returns
     -------
     Similar
-        The others themselves are in it, if they are streamlines of `data`.
+        Given streamlines of `data` are part of the result.
 
     Raises
     ------
     ValueError
-        If there are no others, or the distance or the number of points has no meaning.
+        If no line with points is given, or `distance` or `n_points` is out of range.
     IndexError
-        If a number is out of range, or a mask has the wrong length.
+        If a streamline is out of range, or a mask has the wrong length.
 
     Notes
     -----
@@ -133,13 +133,14 @@ def similar(
 
 
 def mdf(a: Any, b: Any, n_points: int = 12) -> Floats:
-    """MDF distance of each of some streamlines from each of others.
+    """Return the MDF distances between the lines of two sets.
 
     Parameters
     ----------
     a, b : Streamlines or list of array_like
-        Of `n` and `m` lines, mm.
+        `n` and `m` lines, mm.
     n_points : int, default: 12
+        Number of points to which all lines are resampled, at equal arc length.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A row for each bundle: how many streamlines, how long, how large, and what arrays and images say of it."""
+"""A table of bundles: counts, lengths, volumes, and means of arrays and images."""
 
 from __future__ import annotations
 
@@ -34,39 +34,39 @@ def bundle_table(
     like: Any = None,
     weights: PointWeights = "length",
 ) -> Table:
-    """Measure bundles.
+    """Return a table with a row for each bundle: counts, lengths, volumes, and means of arrays and images.
 
     Parameters
     ----------
     data : FibletSet or Streamlines
+        The tractogram.
     groups : mapping of str to array_like, optional
         Streamlines by name; the groups of `data` by default.
     images : mapping of str to image, optional
-        Images to take means of, by name: paths, ``(array, affine)``, of nibabel, or ImageData. They are sampled at the
-        points.
+        Images by name, sampled at the points: paths, ``(array, affine)``, images of nibabel, or ImageData.
     voxel_size : float, optional
-        mm: side of the voxels that volumes are counted in; 1 by default.
+        Side of the voxels that volumes are counted in, mm; 1 by default.
     like : image, optional
-        Whose voxels volumes are counted in, instead.
+        Image whose voxels volumes are counted in, instead of `voxel_size`.
     weights : {"length", "points"}
-        What counts in means of images and per-point arrays: each point by half the length of the segments beside it, as
-        in MRtrix's ``tcksample -stat_tck mean``, or every point the same.
+        Weights of points in means of images and per-point arrays. ``"length"``: half the length of the adjacent
+        segments, as in MRtrix's ``tcksample -stat_tck mean``. ``"points"``: all equal.
 
     Returns
     -------
     Table
         Columns ``bundle``; ``count``, ``points``; ``length_mean``, ``length_std`` (population), ``length_min``,
-        ``length_max`` and ``length_total``, mm; ``volume_voxels``, voxels that a streamline passes, cut exactly at
-        their faces, and ``volume_mm3``; then for each image, per-point and per-streamline array of single numbers
-        ``mean_NAME`` and ``std_NAME``, over points (see `weights`) or streamlines that have a value. NaN where there is
-        nothing, such as points without a length.
+        ``length_max`` and ``length_total``, mm; ``volume_voxels``, the number of voxels that streamlines pass, and
+        ``volume_mm3``; then ``mean_NAME`` and ``std_NAME`` for each image and each per-point or per-streamline array of
+        single numbers, over the points (see `weights`) or streamlines that have a value. NaN without values.
 
     Raises
     ------
     IndexError
         If a streamline is out of range.
     TypeError, ValueError
-        If an image is none, has several numbers per voxel, or a voxel's size is none, or `weights` is unknown.
+        If an image is invalid or has several numbers per voxel, `voxel_size` is not above 0, both `voxel_size` and
+        `like` are given, or `weights` is unknown.
     """
     from ..density.volume import Visits
 

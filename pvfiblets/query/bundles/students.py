@@ -18,20 +18,20 @@ def _share(t: float, freedom: int) -> float:
     return 2.0 / math.pi * (angle + (sine * total if freedom > 1 else 0.0))
 
 
-def student_quantile(share: float, freedom: int) -> float:
-    """Return the value that a share of all lies within, on either side of 0."""
-    if not 0.0 < share < 1.0:
-        raise ValueError(f"the share is {share}; give a number between 0 and 1, such as 0.95")
+def student_quantile(confidence: float, freedom: int) -> float:
+    """Return t so that a number lies between -t and t with this probability."""
+    if not 0.0 < confidence < 1.0:
+        raise ValueError(f"confidence is {confidence}; give a number between 0 and 1, such as 0.95")
     if freedom < 1:
         raise ValueError(f"{freedom} degrees of freedom; at least 1 is needed")
     if freedom > 10_000:  # where the normal distribution's differs by less than 1e-4 of it
         from statistics import NormalDist
 
-        return NormalDist().inv_cdf(0.5 + share / 2.0)
+        return NormalDist().inv_cdf(0.5 + confidence / 2.0)
     low, high = 0.0, 1.0
-    while _share(high, freedom) < share:
+    while _share(high, freedom) < confidence:
         high *= 2.0
     for _ in range(100):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if _share(middle, freedom) < share else (low, middle)
+        low, high = (middle, high) if _share(middle, freedom) < confidence else (low, middle)
     return 0.5 * (low + high)

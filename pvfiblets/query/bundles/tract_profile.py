@@ -1,8 +1,8 @@
-"""Values along a bundle as its core has them: tract profiles.
+"""Tract profiles: mean values along a bundle.
 
-Streamlines are turned to run one way and resampled to places of equal arc length. At each place the value is the mean
-over the streamlines, those near the bundle's core counting more: the weight is the inverse of the Mahalanobis distance
-of a streamline's place from the mean place, by the covariance of all streamlines' places there.
+Streamlines are oriented alike and resampled to positions of equal arc length. At each position the profile is a
+weighted mean over the streamlines. The weight is the inverse Mahalanobis distance of a streamline from the mean
+position, so streamlines near the bundle's core count more.
 
 Source: Yeatman, Dougherty, Myall, Wandell and Feldman, "Tract profiles of white matter properties: automating
 fiber-tract quantification", PLoS ONE 7(11) (2012), methods, "Tract profiles"; dipy's ``afq_profile`` with
@@ -39,26 +39,26 @@ MOST = 1 << 27  # places, streamlines times places along them, that are held tog
 
 @dataclass(frozen=True, eq=False)
 class TractProfile:
-    """A value along a bundle, with a band about it.
+    """Mean of a value along a bundle, with a confidence band.
 
     Attributes
     ----------
     mean, std : numpy.ndarray
-        ``(n,)`` float64: weighted mean, and standard deviation of the averaged values; NaN without values.
+        ``(n,)`` float64: weighted mean and standard deviation; NaN without values.
     low, high : numpy.ndarray
-        ``(n,)`` float64: ends of the band in which the true mean lies with some confidence, by Student's distribution.
+        ``(n,)`` float64: confidence interval of the mean, by Student's distribution; NaN for one streamline.
     position : numpy.ndarray
-        ``(n,)`` from 0 to 1: fractions of the length.
+        ``(n,)`` float64 from 0 to 1: fractions of the length.
     core : numpy.ndarray
-        ``(n, 3)`` float64 mm: the mean places; NaN of averaged profiles.
+        ``(n, 3)`` float64 mm: mean positions; NaN for averaged profiles.
     name : str
-        Of the value.
+        Name of the value.
     bundle : str
-        Of the bundle, or of the group of subjects.
+        Name of the bundle, or of the group of subjects.
     count : int
-        Streamlines, or profiles, that were averaged.
+        Number of averaged streamlines or profiles.
     confidence : float
-        Of the band.
+        Confidence level of ``low`` and ``high``, between 0 and 1.
     """
 
     mean: Floats
@@ -80,18 +80,21 @@ class TractProfile:
         return f"TractProfile({self.name!r} along {where}: {len(self)} places, {self.count:,} averaged)"
 
     def table(self) -> Table:
-        """Return a row for each place: ``position``, ``mean``, ``std``, ``low``, ``high``, ``x``, ``y``, ``z``."""
+        """Return a row for each position.
+
+        Columns: ``bundle``, ``value``, ``position``, ``mean``, ``std``, ``low``, ``high``, ``x``, ``y``, ``z``.
+        """
         return profile_table([self])
 
     def plot(self, ax: Any = None, *, color: Any = None) -> Any:
-        """Draw the mean as a line in its band, by matplotlib.
+        """Plot the mean and its confidence band with matplotlib.
 
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-            Drawn into; a new figure's by default.
+            Axes to draw into; those of a new figure by default.
         color : optional
-            Anything matplotlib takes.
+            A matplotlib colour.
 
         Returns
         -------
@@ -113,27 +116,28 @@ def tract_profile(
     name: str = "",
     bundle: str = "",
 ) -> TractProfile:
-    """Average a value along a bundle's streamlines.
+    """Return the mean of a value at equally spaced positions along a bundle.
 
     Parameters
     ----------
     data : FibletSet or Streamlines
+        The tractogram.
     ids : array_like, slice, Bundle, Cluster or str
         The bundle's streamlines, or the name of a group.
     values : str, image or array_like
-        The name of a per-point array, one number for each point of `data`, or an image to sample at the places: a
-        path, ``(array, affine)``, of nibabel, or an ImageData.
+        The name of a per-point array, or ``"curvature"`` (1/mm) or ``"arc_length"`` (mm); one number for each point of
+        `data`; or an image, sampled at the positions: a path, ``(array, affine)``, an image of nibabel or an ImageData.
     n : int, default: 100
-        Places along each streamline, its ends included.
+        Number of positions along each streamline, ends included.
     weights : {'core', 'equal'}
-        Whether streamlines near the core count more.
+        ``"core"``: streamlines near the core count more. ``"equal"``: all count the same.
     orient_by : array_like, optional
-        ``(m, 3)`` mm: a line that all are turned to run along; by default the first of the bundle.
+        ``(m, 3)`` mm: a line; streamlines that run against it are reversed. By default the first of the bundle.
     confidence : float, default: 0.95
-        Of the band. It assumes independent streamlines, which is wrong within one brain: :func:`average_profiles`
-        returns bands over subjects.
+        Confidence level of the band, between 0 and 1. The band assumes independent streamlines, which those of one
+        brain are not: :func:`average_profiles` returns bands over subjects.
     name, bundle : str, optional
-        For legends and tables.
+        Labels for legends and tables.
 
     Returns
     -------
@@ -142,11 +146,13 @@ def tract_profile(
     Raises
     ------
     KeyError
-        If there is no array or group of that name.
+        If no array or group has that name.
+    IndexError
+        If a streamline is out of range.
     ValueError
-        If there is no streamline with points, values do not fit, or a number has no meaning.
+        If no streamline has points, the values have the wrong shape, or a number is out of range.
     """
-    n = check_count(n)
+    n = check_count(n, "n")
     if weights not in get_args(Weights):
         raise ValueError(f"weights is {weights!r}; give one of {', '.join(map(repr, get_args(Weights)))}")
     student_quantile(confidence, 1)
@@ -172,18 +178,18 @@ def tract_profile(
 
 
 def core_weights(places: Floats) -> Floats:
-    """Weight of each streamline at each place, by its distance from the core.
+    """Return the weight of each streamline at each position, by its distance from the core.
 
     Parameters
     ----------
     places : numpy.ndarray
-        ``(m, n, 3)`` mm, all streamlines running the same way.
+        ``(m, n, 3)`` float64 mm: `n` positions of `m` streamlines that run the same way.
 
     Returns
     -------
     numpy.ndarray
-        ``(m, n)`` that sum to 1 over the streamlines: inverse Mahalanobis distances from the mean place. Where all
-        streamlines meet in one place, or lie in a plane or on a line, distances are those within it.
+        ``(m, n)`` float64: inverse Mahalanobis distances from the mean position; each column sums to 1. Positions in
+        one point, on one line or in one plane are measured within it.
     """
     m = len(places)
     apart = places - places.mean(axis=0)
@@ -200,26 +206,26 @@ def core_weights(places: Floats) -> Floats:
 
 
 def average_profiles(profiles: Iterable[TractProfile], *, confidence: float = 0.95, bundle: str = "") -> TractProfile:
-    """Average the profiles of several subjects, each counting the same.
+    """Average the profiles of several subjects with equal weights.
 
     Parameters
     ----------
     profiles : iterable of TractProfile
-        Of the same value, at the same number of places.
+        Profiles of the same value, at the same number of positions.
     confidence : float, default: 0.95
-        Of the band, by Student's distribution over the subjects.
+        Confidence level of the band, by Student's distribution over the subjects.
     bundle : str, optional
-        What the group is called.
+        Name of the group; by default the bundle of the first profile.
 
     Returns
     -------
     TractProfile
-        ``low`` and ``high`` are NaN where fewer than two subjects have a value.
+        ``std``, ``low`` and ``high`` are NaN where fewer than two subjects have a value.
 
     Raises
     ------
     ValueError
-        If there is none, or they differ in the number of places.
+        If there are no profiles, or their numbers of positions differ.
     """
     given = list(profiles)
     if not given or len({len(p) for p in given}) != 1:
@@ -234,7 +240,7 @@ def average_profiles(profiles: Iterable[TractProfile], *, confidence: float = 0.
 
 
 def profile_table(profiles: Sequence[TractProfile]) -> Table:
-    """Return a row for each place of each profile, with the columns of :meth:`TractProfile.table` and ``bundle``."""
+    """Return a row for each position of each profile, with the columns of :meth:`TractProfile.table`."""
     columns: dict[str, list[npt.NDArray[Any]]] = {}
     for p in profiles:
         rows: dict[str, npt.NDArray[Any]] = {

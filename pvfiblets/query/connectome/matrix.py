@@ -27,6 +27,7 @@ from ...images.sources import as_image, is_image
 from ...support.progress_bar import progress_bar
 from ...support.real_numbers import real_numbers
 from ..measures.measures import measure
+from ..selection.endpoints import end_points
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
@@ -49,20 +50,20 @@ class Connectome:
     Attributes
     ----------
     matrix : numpy.ndarray
-        ``(n, n)`` float64, symmetric: row and column ``p`` are parcel ``labels[p]``; on the diagonal are streamlines
-        that begin and end in one. Means, minima and maxima of pairs without streamlines are NaN.
+        ``(n, n)`` float64, symmetric: row and column ``p`` belong to parcel ``labels[p]``. The diagonal holds
+        streamlines with both ends in one parcel. Means, minima and maxima are NaN for pairs without streamlines.
     counts : numpy.ndarray
-        ``(n, n)`` int64 streamlines behind each number.
+        ``(n, n)`` int64: number of streamlines of each pair.
     labels : numpy.ndarray
         ``(n,)`` int64, the labels of the atlas, rising.
     names : list of str
-        Of the parcels.
+        Names of the parcels.
     ends : numpy.ndarray
         ``(n_streamlines, 2)`` int64: labels of the first and last point, 0 for none.
     contrast, statistic : str
-        What was put together, and how.
+        The value of each streamline, and how the values of a pair were combined.
     radius : float
-        mm.
+        Search radius of the ends, mm.
     """
 
     matrix: Floats
@@ -97,7 +98,7 @@ class Connectome:
         Raises
         ------
         KeyError
-            If there is no such parcel, or more than one of that name.
+            If no parcel, or more than one, has that name or label.
         """
         if isinstance(parcel, str):
             rows = [row for row, name in enumerate(self.names) if name == parcel]
@@ -115,7 +116,7 @@ class Connectome:
         Parameters
         ----------
         first, second : int or str
-            Labels or names; the order does not matter. Without `second`, all that begin or end in the first.
+            Labels or names, in any order. Without `second`, all streamlines with an end in the first.
 
         Returns
         -------
@@ -139,15 +140,15 @@ class Connectome:
         Parameters
         ----------
         path : str or PathLike
-            ``.csv`` or ``.tsv`` with the parcels' names in the first row and column; ``.txt``, numbers with spaces
-            between, as MRtrix reads them; ``.npy``. Missing numbers are empty cells of the former, else NaN.
+            ``.csv`` or ``.tsv``: names in the first row and column, missing numbers empty. ``.txt``: numbers separated
+            by spaces, as for MRtrix. ``.npy``. The last two hold missing numbers as NaN.
 
         Raises
         ------
         ValueError
-            If the suffix is another.
+            If the suffix is unknown.
         OSError
-            If it cannot be written.
+            If the file cannot be written.
         """
         from ...support.whole_files import replacing
 
@@ -229,28 +230,27 @@ def connectome(
     Parameters
     ----------
     data : FibletSet, Streamlines, str or PathLike
-        Of fiblets only each streamline's last one is decoded, unless `contrast` needs more.
+        The tractogram. Only the last fiblet of each streamline is decoded, unless `contrast` needs more.
     labels : image
         Whole numbers ``(i, j, k)``, 0 for no parcel: a path, an image of nibabel, ``(array, affine)`` or an ImageData.
     weights : str or array_like, optional
         ``(n_streamlines,)`` finite numbers of 0 or more, such as SIFT2's, or the name of a per-streamline array.
     contrast : str, array_like or image, default: 'count'
-        ``'count'``: each streamline counts 1, times its weight. Else a number for each streamline: ``'length'`` (mm),
-        another of :func:`.query.measures.measure` or a stored array by its name, an image, or ``(n_streamlines,)``
-        numbers. Of an image, or an array with numbers per point, it is the mean along the streamline, as
-        :func:`pvfiblets.sample` has it. Streamlines whose number is NaN are left out.
+        Value of each streamline. ``'count'``: 1. ``'length'`` (mm), another measure or a stored array by name, an
+        image, or ``(n_streamlines,)`` numbers. Images and arrays per point are averaged along the streamline, as by
+        :func:`pvfiblets.sample`. Streamlines with the value NaN are skipped.
     radius : float, default: 4.0
-        mm about an end in which its parcel is looked for; 0: the voxel in which it lies.
+        Search radius around each end for a parcel, mm; 0 for the end's own voxel.
     statistic : {'sum', 'mean', 'min', 'max'}, optional
-        How numbers of one pair become one: by default ``'sum'`` of counts and ``'mean'`` of all else. Weights take
-        part in sums and means.
+        Combines the values of a pair; by default ``'sum'`` for ``'count'`` and ``'mean'`` for others. Sums and means
+        are weighted.
     names : mapping of int to str, optional
-        Of the parcels; those without one are called by their number.
+        Names of the parcels; others are named by their number.
     ends : array_like, optional
-        ``(n_streamlines, 2)`` labels of the ends, as :func:`end_labels` gives them for these labels and this radius;
-        they are looked for by default.
+        ``(n_streamlines, 2)`` labels of the ends, such as the ``ends`` of another matrix of these labels and this
+        radius; computed by default.
     progress : bool or callable
-        As of :func:`end_labels`.
+        Show a progress bar; or call this with the name of the step and its finished share, from 0 to 1.
 
     Returns
     -------
@@ -305,7 +305,7 @@ def end_labels(data: FibletSet | Streamlines, labels: Any, radius: float = 4.0, 
     offsets, distances = _offsets(linear, reach + slack if reach > 0.0 else 0.0)
     if callable(progress):
         progress("finding ends", 0.0)
-    points = np.ascontiguousarray(_end_points(data).reshape(-1, 3))
+    points = np.ascontiguousarray(end_points(data).reshape(-1, 3))
     found, voxels = np.zeros(len(points), np.int64), np.ascontiguousarray(atlas.labels, np.int64)
     with progress_bar(progress is True, total=len(points), desc="looking for parcels", unit="ends") as bar:
         for first in range(0, len(points), TOGETHER):
@@ -350,20 +350,6 @@ def opened(data: Any) -> Any:
     from ...codec.files.open_lines import open_lines
 
     return open_lines(Path(data).expanduser())
-
-
-def _end_points(data: Any) -> Floats:
-    from ...streamlines import Streamlines
-
-    if not isinstance(data, Streamlines):
-        from ..selection.endpoints import end_points
-
-        return end_points(data)
-    offsets = np.asarray(data.offsets)
-    ends = np.full((len(data), 2, 3), np.nan)
-    some = offsets[1:] > offsets[:-1]
-    ends[some, 0], ends[some, 1] = data.points[offsets[:-1][some]], data.points[offsets[1:][some] - 1]
-    return ends
 
 
 def _numbers(data: Any, given: Any, n: int, name: str) -> Floats:

@@ -13,37 +13,40 @@ from ..selection.endpoints import end_points
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
+    from ...streamlines import Streamlines
 
 
-def end_parcels(fiblets: FibletSet, atlas: Any, names: Mapping[int, str] | None = None) -> npt.NDArray[np.str_]:
-    """Return the names of the two parcels in which each streamline ends, in either order.
+def end_parcels(
+    data: FibletSet | Streamlines, atlas: Any, names: Mapping[int, str] | None = None
+) -> npt.NDArray[np.str_]:
+    """Return the names of the two parcels that each streamline connects.
 
     Parameters
     ----------
-    fiblets : FibletSet
-        Of each streamline only the last fiblet is decoded.
+    data : FibletSet or Streamlines
+        The tractogram. Only the last fiblet of each streamline is decoded.
     atlas : image
         Whole numbers ``(i, j, k)``, 0 for no parcel: a path, an image of nibabel, ``(array, affine)`` or an ImageData.
-        A point has the number of the voxel that it lies in.
+        The parcel of an end is that of its voxel.
     names : mapping of int to str, optional
-        Of the parcels; those without one are called by their number.
+        Names of the parcels; others are named by their number.
 
     Returns
     -------
     numpy.ndarray
-        ``(n_streamlines,)`` text such as ``"3 - 17"``, the lower number first; empty where an end lies in no parcel.
-        Given as ``scalars``, each pair is a category with a colour of its own.
+        ``(n_streamlines,)`` text such as ``"3 - 17"``, the lower number first; empty if an end lies in no parcel.
+        As ``scalars``, each pair is a category with its own colour.
 
     Raises
     ------
     TypeError
         If the atlas is not an image.
     ValueError
-        If it has other than three axes, or fractions, or an affine that flattens space.
+        If the atlas does not have three axes, holds fractions, or has a singular affine.
     """
     image = as_image(atlas, "the atlas")
     labels, inverse = image.labels, image.inverse
-    ends = end_points(fiblets).reshape(-1, 3)
+    ends = end_points(data).reshape(-1, 3)
     at = np.rint(ends @ inverse[:3, :3].T + inverse[:3, 3])  # NaN of streamlines without points stays
     inside = ((at >= 0) & (at < labels.shape)).all(axis=1)
     found = np.zeros(len(ends), np.int64)

@@ -53,29 +53,28 @@ def density(
     ends_only: bool = False,
     progress: Progress = False,
 ) -> DensityMap:
-    """Sum streamlines in the voxels of a grid.
+    """Return a map of streamlines on a grid of voxels: counts, lengths, directions or means of values.
 
     Parameters
     ----------
     source : FibletSet, Streamlines, str or PathLike
-        A path may have any format; the file is read in pieces.
+        The tractogram; files of any format are read in pieces.
     voxel_size : float or array_like, optional
-        mm, one or along each axis: the grid lies along the axes of space about all points, with faces at whole
-        multiples. Either this or `like`.
+        Voxel size in mm, one number or one per axis. The grid is axis-aligned, encloses all points, and has faces at
+        whole multiples of the size. Give either this or `like`.
     like : object, optional
-        An image whose grid it is: of nibabel or its path, a :class:`pyvista.ImageData`, ``(array, affine)``,
-        ``(shape, affine)``, or another map. Oblique, flipped and sheared ones are as exact. What lies outside is not
-        counted.
+        An image whose grid is used: a path, an image of nibabel, a :class:`pyvista.ImageData`, ``(array, affine)``,
+        ``(shape, affine)``, or another map. Oblique, flipped and sheared grids are exact too. Parts of streamlines
+        outside the grid do not count.
     weights : str or array_like, optional
-        A finite number of 0 or more for each streamline, such as SIFT2's, or the name of an array that holds them.
+        Finite numbers of 0 or more, one per streamline, such as SIFT2's, or the name of such an array.
     contrast : str, Distance, Values or array_like, default: 'count'
-        ``'count'``, the streamlines that visit a voxel, each once: with a point in it, or some length; ``'length'``,
-        mm; ``'direction'``, three numbers: the mean magnitudes of x, y and z of the tangent. An array, one number for
-        each streamline or each point, gives its mean in the voxel, as does what :func:`.query.measures.measure` takes
-        for compressed sets, such as the name of a stored array; ``'length'`` is never the measure here. So does an
-        image, whose values at the points count where there are any.
+        ``'count'``: number of streamlines with a point or some length in the voxel. ``'length'``: their length in it,
+        mm. ``'direction'``: mean magnitudes of the tangent's x, y and z. Anything else gives the mean of a value in
+        the voxel: an array with one number per streamline or per point, the name of a stored array, an image, or for a
+        FibletSet a measure such as ``'curvature'``.
     ends_only : bool, default: False
-        Count end points instead: a streamline has two, of a single point one; means are over end points.
+        Count end points only; means are over end points. A streamline of one point has one end.
     progress : bool or callable, default: False
         Show a progress bar; or call this with the name of the step and its finished share, 0 to 1.
 
@@ -89,17 +88,16 @@ def density(
     FormatError
         If a file is damaged.
     KeyError
-        If there is no array of that name.
+        If no array has that name.
     TypeError
         If `source` or `like` has another type.
     ValueError
-        If neither or both of `voxel_size` and `like` are given, a number makes no sense, an array does not fit, a point
-        is not finite, or the grid takes more memory than there is.
+        If neither or both of `voxel_size` and `like` are given, a number is out of range, an array has the wrong
+        length, a point is not finite, or the grid does not fit into memory.
 
     Notes
     -----
-    A voxel contains its lower faces, not its upper ones. The length of a path exactly in a face counts for the voxel
-    above.
+    A voxel contains its lower faces, not its upper ones. A path exactly in a face counts for the voxel above.
     """
     if (voxel_size is None) == (like is None):
         raise ValueError("give either voxel_size= (mm) or like= (an image whose grid is taken)")

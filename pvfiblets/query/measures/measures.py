@@ -85,19 +85,19 @@ class Values:
 
 @dataclass(frozen=True, init=False)
 class Distance:
-    """Distance to a region, 0 inside of it, or to a position.
+    """Distance to a region (0 inside) or to a position.
 
     Parameters
     ----------
     what : Region or array_like
         A region that has distances (:meth:`.Region.distance`), or ``(3,)`` mm.
     per : {'streamline', 'point'}
-        Whether a streamline has the least distance of its points, or each point has its own.
+        ``'streamline'``: the smallest distance of the streamline's points. ``'point'``: the distance of each point.
 
     Raises
     ------
     ValueError
-        If the position is not three finite numbers, or ``per`` is neither.
+        If the position is not three finite numbers, or `per` is unknown.
     """
 
     what: Region | tuple[float, float, float]

@@ -35,7 +35,7 @@ _MEAN = "mean_"  # of values along a streamline
 class Table(dict[str, npt.NDArray[Any]]):
     """Columns of equal length by name: a dict of ``(n,)`` arrays.
 
-    ``pandas.DataFrame(table)``, ``pyarrow.table(table)`` and ``polars.DataFrame(table)`` take it as it is.
+    ``pandas.DataFrame(table)``, ``pyarrow.table(table)`` and ``polars.DataFrame(table)`` accept it directly.
     """
 
     @property
@@ -61,15 +61,15 @@ class Table(dict[str, npt.NDArray[Any]]):
         Parameters
         ----------
         path : str or PathLike
-            ``.tsv`` has tabs between values, ``.parquet`` is Apache Parquet, and all else is comma-separated; ``-`` is
-            that to standard output. Texts begin with a line of names, and leave numbers that are missing empty.
+            ``.tsv``: separated by tabs. ``.parquet``: Apache Parquet. Any other suffix: separated by commas; ``-``
+            writes this to standard output. Text files start with a line of names; missing numbers are empty.
 
         Raises
         ------
         ImportError
-            If it is to be Parquet, and pyarrow is not installed.
+            If the suffix is ``.parquet`` and pyarrow is not installed.
         OSError
-            If it cannot be written.
+            If the file cannot be written.
         """
         target = None if str(path) == "-" else Path(path).expanduser()
         suffix = "" if target is None else target.suffix.lower()

@@ -37,7 +37,7 @@ NEAR = 0.25
 
 @dataclass(frozen=True, eq=False)
 class FibletIndex:
-    """See the module. With `P` parts a fiblet, `P` + 1 positions of it are kept.
+    """A spatial index of fiblets: similar fiblets in leaves, and each fiblet as `P` chords between `P` + 1 points.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class FibletIndex:
         ``(n_fiblets, 4 P + 3)`` uint8, in that order: positions less the leaf's mean ones, signed, and the distance
         within which all points of each part, the next fiblet's first with them, lie from its chord.
     seconds : float
-        That it took to make; 0 if it came from a file.
+        Time to build the index; 0 if it was read from a file.
     """
 
     order: npt.NDArray[np.uint32]

@@ -50,9 +50,9 @@ class LiveRegion:
     Attributes
     ----------
     seconds : float
-        That the last change took.
+        Duration of the last change.
     looked_at, decoded : int
-        Fiblets near the change, and the decoded ones among them.
+        Number of fiblets near the last change, and of decoded ones among them.
     """
 
     def __init__(self, fiblets: FibletSet, grid: VoxelGrid) -> None:

@@ -131,7 +131,7 @@ class RegionPainter:
         Parameters
         ----------
         name : str or None
-            Region; None erases.
+            Name of the region; None erases.
         path : array_like
             ``(3,)`` or ``(n, 3)`` mm: position of the brush, or the polyline along which it moves.
         radius : float
@@ -169,8 +169,9 @@ class RegionPainter:
         Parameters
         ----------
         name : str or None
+            Name of the region; None erases.
         points : array_like
-            ``(n, 3)`` mm, 3 corners at least; it closes itself, inside is by the even-odd rule.
+            ``(n, 3)`` mm: 3 corners or more of a polygon, filled by the even-odd rule.
         plane : {0, 1, 2}
             Axis of voxels across the slice, which is the first corner's.
         """
@@ -197,6 +198,7 @@ class RegionPainter:
         Parameters
         ----------
         name : str or None
+            Name of the region; None erases.
         seed : array_like
             ``(3,)`` mm.
         plane : {0, 1, 2}, optional
@@ -214,14 +216,15 @@ class RegionPainter:
         Parameters
         ----------
         name : str or None
+            Name of the region; None erases.
         seed : array_like
             ``(3,)`` mm; nothing is painted if its value is out of range.
         image : array_like
             ``(i, j, k)`` numbers on this grid.
         low, high : float
-            Both included.
+            Smallest and largest value, both included.
         radius : float, optional
-            mm from the seed, beyond which nothing is painted.
+            Largest distance from the seed, mm.
         plane : {0, 1, 2}, optional
             Only within the slice across this axis.
         """

@@ -92,21 +92,22 @@ def pack(region: Region) -> Packed:
 
 
 def classify(region: Region, centres: npt.ArrayLike, radii: npt.ArrayLike) -> npt.NDArray[np.int8]:
-    """Classify balls by whether they lie in a region.
+    """Classify balls as inside, outside or undecided.
 
     Parameters
     ----------
     region : Region
+        Region in mm.
     centres : array_like
         ``(n, 3)`` mm.
     radii : array_like
-        ``(n,)`` mm, or one for all; 0 is a position.
+        ``(n,)`` mm, or one for all; 0 for single positions.
 
     Returns
     -------
     numpy.ndarray
-        ``(n,)`` int8: 1 if `Region.contains` holds for the whole ball, -1 if for no position in it, 0 if undecided:
-        near the region's boundary, and wherever a number is not finite.
+        ``(n,)`` int8: 1 if the whole ball is inside, -1 if it is outside, 0 if undecided: near the region's boundary,
+        or if a number is not finite.
 
     Raises
     ------

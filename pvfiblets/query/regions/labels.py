@@ -59,7 +59,7 @@ class Volume:
 
 
 class Labels(Shape):
-    """The voxels of a volume that hold chosen labels; a position has the label of the voxel nearest to it.
+    """The voxels of a label volume with chosen labels; a position has the label of its nearest voxel.
 
     Parameters
     ----------
@@ -68,16 +68,16 @@ class Labels(Shape):
     affine : array_like
         ``(4, 4)``: voxel (i, j, k), whose centre is at integers, to mm.
     labels : int or sequence of int, optional
-        Those that are in; all but 0 unless given.
+        Labels of the region; all except 0 by default.
 
     Raises
     ------
     ValueError
-        If the volume has not three axes or no voxel, no voxel holds such a label, or the affine cannot be inverted.
+        If the volume does not have three axes, is empty or has none of the labels, or the affine is singular.
 
     Notes
     -----
-    Outside of the volume is outside of the region. The nearest voxel of ``v`` is ``floor(v + 0.5)``.
+    Positions outside the volume are outside the region. The nearest voxel of ``v`` is ``floor(v + 0.5)``.
     """
 
     def __init__(self, volume: npt.ArrayLike, affine: npt.ArrayLike, labels: npt.ArrayLike | None = None) -> None:

@@ -34,16 +34,16 @@ MAX_STACK = 6  # 64 words push at most 32 leaves; a stack of depth d needs at le
 
 
 class Region:
-    """A part of space; see the module for its parts. Immutable; equal and hashed by content.
+    """A part of space: shapes joined by ``&``, ``|``, ``~`` and ``-``. Immutable; equal and hashed by content.
 
-    Surfaces and label volumes count as equal if they are the same object's data, placed alike.
+    Surfaces and label volumes are equal if they share their data and have the same placement.
 
     Parameters
     ----------
     leaves : tuple of Shape
-        Each once.
+        The shapes, without repetition.
     program : tuple of int
-        As above, and right.
+        Postfix expression of leaf numbers, :data:`AND`, :data:`OR` and :data:`NOT`; it is not checked.
 
     Raises
     ------

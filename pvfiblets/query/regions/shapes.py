@@ -140,7 +140,7 @@ class Box(Shape):
     Raises
     ------
     ValueError
-        If a number is not finite, a size is not above 0, bounds are reversed, or the rotation is none.
+        If a number is not finite, a size is not above 0, bounds are reversed, or the rotation is invalid.
     """
 
     def __init__(

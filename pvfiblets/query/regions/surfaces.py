@@ -92,33 +92,33 @@ class Mesh:
 
 
 class Surface(Shape):
-    """The inside of a closed triangle mesh: where its winding number is not 0.
+    """The inside of a closed triangle mesh: positions with a winding number other than 0.
 
-    Of several components each encloses its own. A shell within another that is turned outwards like it encloses nothing
-    more; one that is turned inwards is a hole.
+    A mesh may have several components; each encloses its own inside. An inner component is a hole if its triangles face
+    inwards; if they face outwards it changes nothing.
 
     Parameters
     ----------
     points : array_like
-        ``(n, 3)`` mm; points at one place are one.
+        ``(n, 3)`` mm; equal positions are merged.
     triangles : array_like
-        ``(m, 3)`` numbers of points.
+        ``(m, 3)`` indices of points.
 
     Raises
     ------
     ValueError
-        If there is no triangle, a number is not finite or names no point, or the mesh is not closed: every edge must
-        be run through as often one way as the other.
+        If there is no triangle, a position is not finite, an index is out of range, or the mesh is not closed: each
+        edge needs as many triangles in one direction as in the other.
 
     Warns
     -----
     UserWarning
-        If the triangles are turned inwards as a whole; they are turned round.
+        If the mesh as a whole faces inwards; its triangles are then flipped.
 
     Notes
     -----
-    Triangles with two corners at one place are left out. ``contains`` is exact up to the rounding of positions: on the
-    surface itself it may say either.
+    Triangles with two equal corners are dropped. ``contains`` is exact up to the rounding of positions: on the surface
+    itself the result may be either.
     """
 
     def __init__(self, points: npt.ArrayLike, triangles: npt.ArrayLike) -> None:
@@ -133,7 +133,7 @@ class Surface(Shape):
 
     @property
     def points(self) -> Array:
-        """``(n, 3)`` float64 mm, as moved; each place once."""
+        """``(n, 3)`` float64 mm, as moved, without repeated positions."""
         return self._world.points
 
     @property

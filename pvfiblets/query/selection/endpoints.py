@@ -11,6 +11,7 @@ from ...codec.decompress import decode_fiblets, select_streamlines
 from ...codec.files.archive import forget
 from ...codec.files.stored_parts import in_parts, of_streamlines
 from ...codec.layout import PAGE, unpack
+from ...streamlines import Streamlines
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
@@ -30,10 +31,20 @@ def anchor_points(fiblets: FibletSet, which: Ints) -> Floats:
     return points
 
 
-def end_points(fiblets: FibletSet) -> Floats:
-    """First and last point of every streamline, without decoding the rest."""
+def end_points(data: FibletSet | Streamlines) -> Floats:
+    """First and last point of every streamline, ``(n, 2, 3)``, without decoding the rest; NaN without points."""
+    if isinstance(data, Streamlines):
+        ends: Floats = np.full((len(data), 2, 3), np.nan)
+        offsets = np.asarray(data.offsets)
+        some = offsets[1:] > offsets[:-1]
+        ends[some, 0], ends[some, 1] = data.points[offsets[:-1][some]], data.points[offsets[1:][some] - 1]
+        return ends
+    return _end_points(data)
+
+
+def _end_points(fiblets: FibletSet) -> Floats:
     if in_parts(fiblets):
-        ends: Floats = of_streamlines(fiblets, end_points, np.nan, (2, 3))
+        ends: Floats = of_streamlines(fiblets, _end_points, np.nan, (2, 3))
         return ends
     ranked = np.full((fiblets.n_ranks, 2, 3), np.nan)
     try:

@@ -122,22 +122,23 @@ def passes(region: Region, *, sampling: Sampling = "lines") -> Predicate:
     Parameters
     ----------
     region : Region
-        mm.
+        Region in mm.
     sampling : {'lines', 'points'}
-        ``'points'``: places between points do not count, as for MRtrix's ``tckedit``.
+        ``'lines'``: the segments between points count too. ``'points'``: only points count, as for MRtrix's
+        ``tckedit``.
 
     Raises
     ------
     TypeError
-        If the region is not a region.
+        If `region` is not a region.
     ValueError
-        If the sampling is neither.
+        If `sampling` is unknown.
 
     Notes
     -----
-    For each segment the parts that lie in each shape are computed as shares of it, in float64, and joined as the
-    region joins its shapes: a segment passes ``a & b`` if one of its places lies in both. A voxel of labels is passed
-    if some length of the segment lies in it; of all other shapes, to touch the boundary is to pass.
+    The parts of each segment inside each shape are computed in float64 and joined like the shapes: a segment passes
+    ``a & b`` if one of its positions lies in both. A segment passes a voxel of labels if some of its length lies
+    inside; it passes any other shape even if it only touches the boundary.
     """
     return Condition(_region(region, "passes"), ANY, sampling=check_sampling(sampling))
 
@@ -153,16 +154,16 @@ def ends_in(region: Region, which: Ends = "any") -> Predicate:
     Parameters
     ----------
     region : Region
-        mm.
+        Region in mm.
     which : {'any', 'both', 'first', 'last'}
-        Which of the two.
+        Ends that must lie in the region: at least one, both, the first point or the last point.
 
     Raises
     ------
     TypeError
-        If the region is not a region.
+        If `region` is not a region.
     ValueError
-        If ``which`` is unknown.
+        If `which` is unknown.
     """
     if which not in get_args(Ends):
         raise ValueError(f"which is {which!r}; give one of {', '.join(map(repr, get_args(Ends)))}")

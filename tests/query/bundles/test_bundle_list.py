@@ -111,6 +111,7 @@ def test_the_picture_follows_the_list(fiblets):
         (lambda b: b.add("", [1]), ValueError, "some text"),
         (lambda b: b.add("z", [99]), IndexError, "99"),
         (lambda b: b.add("z", [1], color=(2, 3)), ValueError, "no colour"),
+        (lambda b: b.add("z", [1], color="blurple"), ValueError, "^'blurple' is no colour; give '#rrggbb'"),
         (lambda b: b.rename("a", "b"), ValueError, "already"),
         (lambda b: b.merge([], "x"), ValueError, "no bundles to merge"),
         (lambda b: b.merge(["a", "b"], "c"), ValueError, "already"),

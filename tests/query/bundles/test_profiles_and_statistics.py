@@ -119,8 +119,8 @@ def test_what_has_no_profile_is_told(lines, image):
         (lambda: bundles.tract_profile(made, [0], "length"), ValueError, "per streamline"),
         (lambda: bundles.tract_profile(made, [0], np.zeros(3)), ValueError, "one for each of"),
         (lambda: bundles.tract_profile(made, [0], image, weights="x"), ValueError, "weights is 'x'"),
-        (lambda: bundles.tract_profile(made, [0], image, 1), ValueError, "n_points is 1"),
-        (lambda: bundles.tract_profile(made, [0], image, confidence=1.0), ValueError, "between 0 and 1"),
+        (lambda: bundles.tract_profile(made, [0], image, 1), ValueError, "n is 1; give"),
+        (lambda: bundles.tract_profile(made, [0], image, confidence=1.0), ValueError, "confidence is 1.0; give"),
         (lambda: bundles.average_profiles([]), ValueError, "at least one"),
     ):
         with pytest.raises(error, match=says):

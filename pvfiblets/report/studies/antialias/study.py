@@ -325,7 +325,7 @@ STUDY = Study(
         "The mean of what each pixel shows, by one sample, by what lines cover of it, or by the mean of some pictures."
     ),
     axes=(
-        Axes("rest", "times/at rest", "errors/at rest", "ms until the picture is finished", "rms error, levels of 255"),
+        Axes("rest", "times/at rest", "errors/at rest", "ms until the image is finished", "rms error, levels of 255"),
         Axes("moving", "times/moving", "errors/moving", "ms per frame", "rms error, levels of 255"),
     ),
     notes=(

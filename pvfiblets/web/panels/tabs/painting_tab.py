@@ -110,7 +110,7 @@ class PaintActions(Actions):
     async def _compile(self) -> None:
         """Compile the kernels of painted regions before the first stroke, with a message."""
         work = lambda *_: kernels.compile_all()  # noqa: E731
-        await self._app.files.run_in_background("regions", work, "compiling, once", cancellable=False)
+        await self._app.files.run_in_background("regions", work, "getting ready (first use only)", cancellable=False)
 
     def choose(self, name: str) -> None:
         """Paint this one from now on."""
