@@ -3,7 +3,9 @@
 A lattice of edge ``h`` errs by at most ``h sqrt(3) / 2`` whatever the steps, and adding integers does not drift.
 """
 
-RECORD_BYTES = 22
+from .layout import WORDS
+
+RECORD_BYTES = 4 * sum(WORDS.values()) + 2  # words, and the radius of the capsule
 LATTICE_LIMIT = 2.0**30  # lattice coordinates stay clear of int32's end, on the GPU too
 MAX_HALVINGS = 15
 TURNED_TOO_FAR = 2**16  # bytes: any split that turns fewer segments too far is better

@@ -1,4 +1,4 @@
-// Strokes over slices: see pvfiblets/web/painting_tab.py. Places are shares of the picture from its upper left; one list
+// Strokes over slices: see pvfiblets/web/panels/tabs/painting_tab.py. Places are shares of the picture from its upper left; one list
 // of them at a time is on its way, and those that the pointer passes meanwhile come with the next.
 (() => {
   "use strict";

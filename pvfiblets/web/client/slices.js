@@ -1,4 +1,4 @@
-// Keys of slices: see pvfiblets/web/slices_tab.py. Where the pointer is says which pane is meant.
+// Keys of slices: see pvfiblets/web/panels/tabs/slices_tab.py. Where the pointer is says which pane is meant.
 (() => {
   "use strict";
 
