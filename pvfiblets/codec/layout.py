@@ -3,8 +3,8 @@
 Everything that packs or unpacks a record (NumPy, compiled kernels, shaders, the file format) takes the bits
 of fields from here; :func:`glsl_source` writes the same table as GLSL, so that a shader cannot disagree with Python.
 How many words there are is also said where they are read: the modules ``decode_kernels``, ``copy_kernels`` and
-``query.selection.passing``, the shaders ``fiblets/data`` and ``fiblets/decode/words.glsl``, and the page's ``fiblets.ts``
-take two words of an anchor and three to decode by.
+``query.selection.passing``, the shaders ``fiblets/data`` and ``fiblets/decode/words.glsl``, and the page's
+``fiblets.ts`` take two words of an anchor and three to decode by.
 
 A fiblet is at most 60 consecutive points of one streamline (paper: Schertzer et al. 2022, section 3.2.2). What culling
 reads is kept apart from what decoding reads, so that a cull pass never drags codes through memory:
