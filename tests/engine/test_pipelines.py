@@ -7,7 +7,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from pvfiblets import compress
+from pvfiblets import compress, regions
 from pvfiblets.codec.point_values import PointValues, linear_table
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.data import measures
@@ -106,6 +106,34 @@ def test_pixels_show_what_compute_finds(gl, camera, style, pipeline):
     assert len(words) == (0 if style == FibletStyle() else 2)
     for ours, theirs in zip(words, their_words, strict=True):
         assert np.array_equal(ours, theirs)
+
+
+@pytest.mark.more
+@pytest.mark.parametrize("seed", range(4))
+def test_chosen_at_random(gl, camera, seed):
+    """Views, brushes, planes, regions, filters and values together, ten scenes a seed."""
+    rng = np.random.default_rng(seed)
+    fiblets = compress(brain_streamlines(200, step=float(rng.choice([0.5, 2.0])), seed=seed))
+    brushes = [{}, {"line_width": 3.0}, {"radius": 0.3}, {"radius": 1.5}, {"line_width": 6.0, "ends": True}]
+    cuts = [None, regions.Sphere((0, 0, 0), 40), regions.Box([-30, 30, -50, 20, -40, 40])]
+    for _ in range(10):
+        eye = [(0, -260, 60), (150, 150, 30), (20, -30, 10)][rng.integers(3)]
+        planes, region = [(0.2, 1, -0.1, 0)][: rng.integers(2)], cuts[rng.integers(3)]
+        view = View(SIZE, camera(SIZE, eye=eye, near=1.0), planes, region=region)
+        values = [None, "arc_length"][rng.integers(2)]
+        style = FibletStyle(tolerance=float(rng.integers(2)) / 2, values=values, **brushes[rng.integers(5)])
+        words = np.bitwise_or.reduce(rng.integers(0, 1 << 32, (4, fiblets.n_points // 32 + 1), np.uint32))
+        shown = rng.random(fiblets.n_streamlines) < 0.5
+        filtering = [None, Filter(points=words), Filter(streamlines=shown)][rng.integers(3)]
+        pictures = []
+        for name in ("compute", "tessellation", "geometry"):
+            renderer = FibletRenderer(gl, fiblets, pipeline=name, culling=["two-phase", None][rng.integers(2)])
+            renderer.filtering = filtering
+            pictures.append(read(renderer.render(view, style)))
+            renderer.release()
+        for picture in pictures[1:]:
+            if picture.drawn.any() or pictures[0].drawn.any():
+                assert_like(picture, pictures[0])
 
 
 def test_wide_lines_join_alike_where_points_are_hidden(gl, camera):
