@@ -57,7 +57,8 @@ async function inflated(bytes: Uint8Array): Promise<Uint8Array> {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-async function unpackOne(facts: Packed, packed: Uint8Array, damaged: FileError): Promise<Numbers> {
+/** Unpack an array; null if it is damaged. */
+async function unpackOne(facts: Packed, packed: Uint8Array): Promise<Numbers | null> {
   const itemSize = Number(facts.dtype.slice(2)), size = itemSize * facts.shape.reduce((a, b) => a * b, 1);
   const rows = itemSize === 1 ? size : facts.shape[0], columns = size / rows / 2;
   const made = new Uint8Array(size), words = new Uint16Array(made.buffer, 0, size >> 1);
@@ -65,14 +66,14 @@ async function unpackOne(facts: Packed, packed: Uint8Array, damaged: FileError):
   for (let i = 0; i < facts.streams.length; ++i) {
     const [, shift, model] = facts.streams[i], blocks = Math.ceil(rows / BLOCK);
     const lengths = await inflated(packed.subarray(at, at + model));
-    if (lengths.length !== 128 * (256 >> shift)) throw damaged;
+    if (lengths.length !== 128 * (256 >> shift)) return null;
     const table = tableOf(lengths, 256 >> shift), stream = itemSize === 1 ? made : new Uint8Array(rows);
     const heads = new DataView(packed.buffer, packed.byteOffset + at + model, 8 * blocks);
     at += model + 8 * blocks;
     for (let block = 0; block < blocks; ++block) {
       const end = at + heads.getUint32(8 * block, true);
       const out = stream.subarray(block * BLOCK, Math.min((block + 1) * BLOCK, rows));
-      if (end > packed.length || !decode(packed.subarray(at, end), table, shift, out)) throw damaged;
+      if (end > packed.length || !decode(packed.subarray(at, end), table, shift, out)) return null;
       at = end;
     }
     if (itemSize > 1) for (let row = 0, word = i >> 1; row < rows; ++row, word += columns) words[word] |= stream[row] << (8 * (i & 1));
@@ -87,10 +88,10 @@ async function unpackOne(facts: Packed, packed: Uint8Array, damaged: FileError):
 /** Unpack the arrays of an archive that are packed. */
 export async function unpacked(archive: Archive): Promise<Archive> {
   for (const [name, facts] of Object.entries((archive.header.packed ?? {}) as Record<string, Packed>)) {
-    const damaged = new FileError(`The member ${name} of the file is damaged. Copy or make the file again.`);
-    const packed = archive.arrays.get(name)?.data;
-    if (!(packed instanceof Uint8Array)) throw damaged;
-    archive.arrays.set(name, { shape: facts.shape, data: await unpackOne(facts, packed, damaged) });
+    // Where facts and bytes disagree, the browser has errors of its own, such as "Failed to fetch".
+    const data = await unpackOne(facts, archive.arrays.get(name)?.data as Uint8Array).catch(() => null);
+    if (!data) throw new FileError(`The member ${name} of the file is damaged. Copy or make the file again.`);
+    archive.arrays.set(name, { shape: facts.shape, data });
   }
   return archive;
 }

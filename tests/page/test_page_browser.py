@@ -10,6 +10,7 @@ import pyvista as pv
 from PIL import Image
 
 import pvfiblets
+from pvfiblets.page import writing
 from pvfiblets.page.scene import CameraPlace, PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
 from pvfiblets.plotting.viewpoints import point_camera
@@ -98,6 +99,38 @@ def test_damaged_data_are_one_sentence_on_the_page(damage, figure, visit, tmp_pa
     page = visit(broken)
     assert re.fullmatch(r"[A-Z][^.]*(\.json)?(\.fiblets)?[^.]*\.( [A-Z][^.]*\.)?", page.message)
     assert "again" in page.message
+
+
+@pytest.fixture(scope="module")
+def packed(tmp_path_factory):
+    """Return the text of a page whose arrays are packed, and the bytes of its streamlines."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(writing, "SMALL_FROM", 0)
+        scene = PageScene("Packed")
+        fiblet_layer(scene, pvfiblets.compress(brain_streamlines(300, seed=5)))
+        text = write_page(scene, tmp_path_factory.mktemp("packed") / "packed.html")[0].read_text()
+    return text, base64.b64decode(re.search(r'id="data-0">([^<]*)<', text)[1])
+
+
+@pytest.mark.parametrize(
+    ("what", "instead"),
+    [
+        (rb'"streams": \[\s*\[\s*\d+,\s*\d+,\s*(\d+)', b"9" * 9),  # tables that end elsewhere
+        (rb'"streams": \[\s*\[\s*\d+,\s*\d+,\s*(\d+)', b"1" + b" " * 9),
+        (rb'"streams": \[\s*\[\s*\d+,\s*(\d+)', b"9"),  # a table of no size
+        (rb'"packed": \{.*?"shape": \[\s*(\d+)', b"9" * 19),
+        (rb'"(streams)"', b"strmeas"),
+    ],
+    ids=["beyond", "within", "shift", "rows", "missing"],
+)
+def test_damaged_packed_arrays_are_one_sentence_on_the_page(what, instead, packed, visit, tmp_path):
+    text, data = packed
+    (begin, end) = re.search(what, data, re.DOTALL).span(1)
+    broken = tmp_path / "broken.html"
+    damaged = data[:begin] + instead[: end - begin] + data[end:]
+    broken.write_text(text.replace(base64.b64encode(data).decode(), base64.b64encode(damaged).decode()))
+    page = visit(broken)
+    assert re.fullmatch(r"The member \S+\.npy of the file is damaged\. Copy or make the file again\.", page.message)
 
 
 @pytest.fixture(scope="module")

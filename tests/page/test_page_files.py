@@ -6,6 +6,7 @@ import importlib.util
 import json
 import re
 import shutil
+import warnings
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -110,6 +111,23 @@ def test_what_a_page_cannot_draw_is_named(fiblets, tmp_path):
         plotter.fiblets.export_page(tmp_path / "figure.html")
     plotter.remove_actor(actor)
     with pytest.raises(ValueError, match="a page cannot draw 'scan'; add streamlines or surfaces, or export an image"):
+        plotter.fiblets.export_page(tmp_path / "figure.html")
+    plotter.close()
+
+
+def test_tubes_have_their_colour_and_their_effects_are_named(tmp_path):
+    plotter = pv.Plotter(off_screen=True, window_size=(100, 80))
+    vessel = pv.Spline([(0, -10, 0), (20, -14, 5), (40, -10, 0)], 9)
+    vessel["radius"] = np.linspace(1.0, 3.0, 9)
+    actor = plotter.add_spline_tubes(vessel, name="vessel", color="red", opacity=0.5)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        plotter.fiblets.export_page(tmp_path / "figure.html")
+    (layer,) = page_of(plotter).layers
+    assert not {"values", "colours"} & layer.keys()  # of one colour
+    assert layer["colour"] == actor.prop.color.float_rgb
+    actor.depth_cue = True
+    with pytest.warns(UserWarning, match="the page leaves out depth_cue of 'vessel': it cannot draw them"):
         plotter.fiblets.export_page(tmp_path / "figure.html")
     plotter.close()
 

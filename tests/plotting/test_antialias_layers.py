@@ -292,6 +292,32 @@ def test_beside_slices_lines_stay_in_all_views(lines, monkeypatch):
     plotter.close()
 
 
+def test_a_cross_hair_leaves_panes_all_samples_at_once(lines, monkeypatch):
+    plotter = pv.Plotter(off_screen=True, window_size=(2 * SIZE[0], 2 * SIZE[1]), shape=(2, 2))
+    image = np.random.default_rng(0).uniform(size=(20, 20, 20)).astype(np.float32), np.diag([8.0, 8.0, 8.0, 1.0])
+    workspace = plotter.slices.workspace(image, thickness=4.0)
+    plotter.add_fiblets(lines, color="yellow", lighting=False)
+    plotter.render_window.SetMultiSamples(0)  # singly, samples of samples would widen edges
+    shot(plotter)
+
+    def moved(place):
+        workspace.position = place
+        plotter.render()
+        renders = Renders(plotter)
+        return shot(plotter), renders.since()
+
+    moved((10.0, 0.0, 0.0))
+    at_once, frames = moved((3.0, 5.0, 7.0))
+    assert frames <= 3
+    with monkeypatch.context() as patch:
+        patch.setattr(Picture, "_lines_at_once", lambda *_: ([], []))
+        moved((10.0, 0.0, 0.0))
+        singly, frames = moved((3.0, 5.0, 7.0))
+    assert frames >= 15
+    assert np.sqrt(((at_once - singly) ** 2.0).mean()) < 3.0
+    plotter.close()
+
+
 def test_selected_streamlines_stay_selected_beside_meshes(scene):
     plotter, actor = scene
     add_meshes(plotter, actor)

@@ -139,6 +139,26 @@ def test_groups_are_labels(streamlines):
         find_fiblet_scalars(compress(Streamlines.from_list([np.zeros((3, 3))])), "group")
 
 
+@pytest.mark.parametrize("scalars", ["group", ["left", "right", ""] * 40])
+def test_categories_have_neither_range_nor_logarithm(streamlines, scalars):
+    plotter = pv.Plotter(off_screen=True, window_size=(150, 120))
+    try:
+        actor = plotter.add_fiblets(streamlines, scalars=scalars)
+        before = actor.mapper.colouring.map_values([0.0, 1.0, np.nan])
+        assert len(np.unique(before, axis=0)) == 3
+        actor.scalars = "length"
+        actor.clim, actor.log_scale = (30.0, 60.0), True
+        actor.scalars = scalars
+        np.testing.assert_array_equal(actor.mapper.colouring.map_values([0.0, 1.0, np.nan]), before)
+        assert actor.clim == (-0.5, 1.5)
+        assert not actor.lookup_table.log_scale
+        actor.scalars = "length"
+        assert actor.clim == (30.0, 60.0)
+        assert actor.lookup_table.log_scale
+    finally:
+        plotter.close()
+
+
 def test_thirty_groups_have_thirty_colours_before_any_bundle_has_its_own(streamlines):
     streamlines.groups = {f"group {k}": np.arange(4 * k, 4 * k + 4) for k in range(30)}
     plotter = pv.Plotter(off_screen=True, window_size=(100, 100))

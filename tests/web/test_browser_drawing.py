@@ -333,6 +333,20 @@ def test_distances_lie_over_the_picture_where_the_server_has_them(here):
     here.page.wait_for_selector("#pv-there-distances svg", state="detached")
 
 
+def test_spline_tubes_are_drawn_as_the_server_draws_them(here):
+    here.page.evaluate("trame.trigger('browse', [''])")
+    here.page.click("[data-entry='vessel.vtp']")
+    here.wait(lambda: here.layers() == 3, "the tubes")
+    for name in ("lines.fiblets", "ball.ply"):
+        here.page.click(f"[data-layer]:has-text('{name}') [data-action=eye]")
+    here.wait(lambda: [one["kind"] for one in here.state("there")["scene"]["layers"]] == ["surface"], "the tubes alone")
+    here.press("r")
+    here.wait(lambda: differing(here.drawn(), here.of_server())[1] > 0.01, "something of them")
+    wrong, _ = differing(here.drawn(), here.of_server())
+    assert wrong < 0.15  # tubes have flat sides and ends
+    assert here.state("frame") == "drawn by this browser"
+
+
 def test_what_the_browser_cannot_draw_the_server_draws_and_says_so(here):
     layer = here.state("layers")[0]["id"]
     picture = here.page.locator("#pv-view img[src^=blob]")

@@ -37,7 +37,10 @@ def resize(here, size, *, left, right):
 
     here.stands()
     at = [here.page.locator(f"#{side}").bounding_box() for side in wanted]
-    shown = [box is not None and box["x"] < size[0] - 1 and box["x"] + box["width"] > 1 for box in at]
+    shown = [
+        box is not None and box["x"] < size[0] - 1 and box["x"] + box["width"] > 1 and box["y"] < size[1] - 1
+        for box in at
+    ]
     assert shown == [left, right]
 
 
@@ -358,6 +361,47 @@ def test_a_phone_shows_all_of_the_first_picture_and_buttons_as_wide_as_fingers(v
         if button.is_visible():
             box = button.bounding_box()
             assert min(box["width"], box["height"]) >= 44.0, button.get_attribute("aria-label")
+
+
+def test_a_panel_of_a_phone_leaves_the_upper_half_to_the_picture(visit):
+    import numpy as np
+
+    here = visit("--mesh", "ball.ply", width=390, height=844, has_touch=True, is_mobile=True)
+    here.wait(lambda: not here.state("left_open"), "the panels to close")
+    closed = here.rests()
+    for side, other in (("left", "right"), ("right", "left")):
+        here.page.tap(f"header .v-btn:has(.mdi-dock-{side})")
+        here.wait(lambda side=side, other=other: here.state(f"{side}_open") and not here.state(f"{other}_open"),
+                  "one panel alone")  # fmt: skip
+        here.stands()
+        panel, view = (here.page.locator(one).bounding_box() for one in (f"#{side}", "#pv-view"))
+        assert panel["height"] <= 0.5 * 844 + 1
+        assert (panel["width"], panel["y"] + panel["height"]) == (390, 844)
+        assert view["y"] + view["height"] <= panel["y"] + 1
+        assert view["height"] >= 0.4 * 844
+        here.wait(lambda: here.picture().shape[0] < 0.5 * 844, "a picture of that height")
+        lit = here.rests().max(axis=2) > 60
+        for found, length in zip((lit.any(axis=0), lit.any(axis=1)), lit.shape[::-1], strict=True):
+            first, last = np.flatnonzero(found)[[0, -1]]
+            assert first > 0
+            assert last < length - 1
+        at = here.page.evaluate(
+            "([x, y]) => !!document.elementFromPoint(x, y).closest('#pv-view')",
+            [view["x"] + view["width"] / 2, view["y"] + view["height"] / 2],
+        )
+        assert at  # nothing lies over it
+    here.page.tap("header .v-btn:has(.mdi-dock-right)")
+    here.wait(lambda: here.picture().shape == closed.shape, "the whole picture again")
+    here.stands()
+    assert all(here.page.locator(side).bounding_box()["y"] >= 844 for side in ("#left", "#right"))
+    here.page.evaluate("window.trame.trigger('browse', ['', 'slices'])")
+    here.page.tap("[data-entry='head.nii.gz']")
+    here.wait(lambda: here.state("slicing")["shown"], "slices")
+    here.page.evaluate("window.trame.state.set('right_open', true)")
+    here.stands()
+    here.rests()
+    tools, told = (here.page.locator(one).bounding_box() for one in (".pv-tools", "#pv-told"))
+    assert tools["x"] + tools["width"] <= told["x"] or tools["y"] + tools["height"] <= told["y"]
 
 
 def test_a_narrow_page_begins_with_the_picture_and_none_is_stretched_by_a_new_size(visit):

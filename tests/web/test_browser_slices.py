@@ -106,6 +106,66 @@ def test_a_t1_is_opened_gone_through_and_found_again(revisit):
     assert told(here) == [20.0, 24.0, 28.0]
 
 
+def test_the_mouse_does_in_a_pane_what_the_table_says(revisit):
+    """The table of docs/slices.md, but for the left button and the wheel alone."""
+    here = revisit("lines.fiblets")
+    sliced(here)
+    here.page.click("[data-layer]:has-text('head.nii.gz')")
+    here.wait(lambda: here.state("chosen_kind") == "image", "the image's settings")
+    at = told(here)
+    mouse, keys = here.page.mouse, here.page.keyboard
+
+    def window():
+        groups = here.state("groups")
+        return next(one["effective"] for group in groups for one in group["properties"] if one["name"] == "clim")
+
+    def drag(button, *held, by=(30, 20)):
+        x, y = pixel(here, "axial", 0.4, 0.4)
+        mouse.move(x, y)
+        for key in held:
+            keys.down(key)
+        mouse.down(button=button)
+        mouse.move(x + by[0], y + by[1], steps=4)
+        mouse.up(button=button)
+        for key in held:
+            keys.up(key)
+
+    def disc():
+        picture = here.rests()
+        view = next(one for one in here.state("slicing")["boxes"] if one["name"] == "axial")
+        rows, columns = (
+            slice(round(length * view[start]) + 2, round(length * (view[start] + view[size])) - 2)
+            for length, start, size in zip(picture.shape, "yx", "hw", strict=False)
+        )
+        bright = picture[rows, columns].min(axis=2) > 200  # a disc in the middle of the image
+        return [found.mean() for found in np.nonzero(bright)], np.sqrt(bright.mean())
+
+    before = window()
+    drag("right")
+    here.wait(lambda: window() != before, "another window")
+    assert told(here) == at
+    here.press("Control+z")
+    here.wait(lambda: window() == before, "the window again")
+    (middle, size) = disc()
+    for button, held in (("left", ["Shift"]), ("middle", [])):
+        drag(button, *held)
+        # Pixels are coarse while something moves.
+        assert disc()[0] == pytest.approx([middle[0] + 20, middle[1] + 30], abs=6), button
+        drag(button, *held, by=(-30, -20))
+        assert disc()[0] == pytest.approx(middle, abs=10)
+    keys.down("Control")
+    mouse.wheel(0, -240)
+    keys.up("Control")
+    here.wait(lambda: disc()[1] > 1.05 * size, "the image nearer")
+    keys.down("Control")
+    mouse.wheel(0, 240)
+    keys.up("Control")
+    here.wait(lambda: disc()[1] < 1.02 * size, "as far as before")
+    drag("right", "Control", by=(0, -30))
+    here.wait(lambda: abs(disc()[1] / size - 1.0) > 0.03, "another size")
+    assert told(here) == at
+
+
 def test_every_key_of_the_list_works(revisit):
     here = revisit("lines.fiblets")
     sliced(here)

@@ -8,6 +8,7 @@ import pytest
 import pvfiblets
 from pvfiblets.plotting.colours.colours import MOST_WORDS
 from pvfiblets.web.panels.tabs.bundles_tab import LISTED
+from pvfiblets.web.view.sent_scene import SentScenes
 from tests.web.desk import Desk
 
 
@@ -48,3 +49,6 @@ def test_a_bar_names_as_many_bundles_as_there_is_room_for(desk, scene):
     assert tables[0].annotations == {}
     assert tables[1].annotations == {float(i): f"Edge {i}" for i in range(MOST_WORDS)}
     assert np.asarray(tables[0].values).shape[0] == 5000
+    many, few = SentScenes(scene).make().content["bars"]
+    assert (len(many["colours"]), many["names"]) == (5000, [])
+    assert len(few["colours"]) == len(few["names"]) == MOST_WORDS

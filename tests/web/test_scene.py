@@ -274,6 +274,19 @@ def test_bars_are_of_visible_layers_and_say_their_values(scene):
     assert list(scene.plotter.scalar_bars.keys()) == []
 
 
+def test_groups_have_names_and_no_range(scene):
+    layer = scene.open("lines.fiblets")
+    rows = {}
+    for scalars in ("length", "group"):
+        scene.set(layer.id, "scalars", scalars)
+        rows[scalars] = {row["name"] for row in scene.queries.properties(layer.id) if row["matters"]}
+    assert rows["length"] - rows["group"] == {"clim", "log_scale", "opacity_by"}
+    assert rows["group"] >= {"cmap", "nan_color", "show_bar"}
+    (legend,) = scene.queries.legend
+    assert legend["names"] == ["near", "far"]
+    assert not {"clim", "log_scale"} & legend.keys()
+
+
 @pytest.mark.few(1)
 @pytest.mark.parametrize("size", [(320, 240), (640, 690), (1600, 400)])
 def test_bars_leave_the_places_of_letters_free(scene, size):

@@ -85,11 +85,42 @@ def test_the_camera_is_no_part_of_the_scene(scene):
     assert scenes.make().content == first.content
 
 
+def tubes(scene, name=None, value=None):
+    layer = scene.open("vessel.vtp", kind="tubes")
+    if name is not None:
+        scene.set(layer.id, name, value)
+    return layer
+
+
+def test_spline_tubes_are_sent_as_surfaces_and_once(scene, monkeypatch):
+    layer = tubes(scene, "scalars", "radius")
+    scenes = SentScenes(scene)
+    first, again = scenes.make(), scenes.make()
+    assert again.content == first.content
+    (surface,), blobs = first.content["layers"], list(first.blobs.values())
+    places = np.frombuffer(blobs[surface["places"]], np.float32).reshape(-1, 3)
+    curve = pv.read(scene.files.resolve("vessel.vtp"))
+    along = pv.Spline(curve.points, 3000).points
+    gaps = np.linalg.norm(places[:, None] - along, axis=2)
+    nodes = np.linalg.norm(curve.points[:, None] - along, axis=2).argmin(axis=1)
+    radius = np.interp(gaps.argmin(axis=1), nodes, curve["radius"])
+    round_ends = (places[:, 0] > 1.0) & (places[:, 0] < 39.0)
+    np.testing.assert_allclose(gaps.min(axis=1)[round_ends], radius[round_ends], atol=0.05)
+    assert [bar["title"] for bar in first.content["bars"]] == ["radius [mm]"]
+    scene.set(layer.id, "radius_scale", 2.0)
+    wider = scenes.make()
+    assert wider.blobs.keys() != first.blobs.keys()
+    monkeypatch.setattr("pvfiblets.plotting.page.page_scene.MOST_TUBE_POINTS", 100)
+    assert scenes.make() == "the tubes 'vessel.vtp'"
+
+
 @pytest.mark.parametrize(
     ("change", "why"),
     [
         (lambda scene: scene.open("head.nii.gz", kind="volume"), "the volume 'head.nii.gz'"),
-        (lambda scene: scene.open("vessel.vtp", kind="tubes"), "the tubes 'vessel.vtp'"),
+        (lambda scene: tubes(scene, "ambient_occlusion", True), "ambient occlusion of 'vessel.vtp'"),
+        (lambda scene: tubes(scene, "silhouette", True), "silhouette of 'vessel.vtp'"),
+        (lambda scene: tubes(scene, "opacity", 0.5), "the opacity of 'vessel.vtp'"),
         (lambda scene: scene.set(scene.layers[0].id, "halos", True), "halos of 'lines.fiblets'"),
         (
             lambda scene: scene.set(scene.layers[0].id, "ambient_occlusion", True),

@@ -62,6 +62,17 @@ async def test_nothing_is_shown_without_the_token(tmp_path, caplog):
     assert "wrong-wrong" not in caplog.text
 
 
+@pytest.mark.parametrize(
+    "request_",
+    ["GARBAGE", "GET / HTTP/9.9", "POST /session HTTP/1.1\r\nContent-Length: zz", "GET / HTTP/1.1\r\nHost: localhost"],
+)
+async def test_no_answer_names_versions_of_libraries(tmp_path, request_):
+    async with gate(tmp_path) as server:
+        head = (await raw(server, f"{request_}\r\nConnection: close\r\n\r\n".encode())).partition(b"\r\n\r\n")[0]
+    assert b"Server: pvfiblets" in head.splitlines()
+    assert b"aiohttp" not in head
+
+
 async def test_the_token_opens_a_session_and_leaves_the_address(tmp_path):
     async with gate(tmp_path) as server, Browser(server) as browser:
         assert server.url == f"http://127.0.0.1:{server.port}/?token={TOKEN}"

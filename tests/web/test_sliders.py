@@ -171,6 +171,39 @@ def test_profiles_have_axes_with_units_and_tell_what_lies_under_the_pointer():
     assert {"share of the streamline's length", "curvature [1/mm]", "0 %", "100 %"} <= set(written)
 
 
+def test_profiles_break_where_values_are_missing():
+    from xml.etree import ElementTree as ET
+
+    from pvfiblets.web.panels.charts import Band, profiles_chart
+
+    nan, x = np.nan, np.linspace(0.0, 1.0, 8)
+    mean = np.array([nan, 0.0, 2.0, nan, 1.0, nan, 3.0, 4.0])
+    wide = np.array([nan, 1.0, 1.0, nan, 1.0, nan, nan, 1.0])  # a band is unknown where one streamline has a value
+    chart = ET.fromstring(profiles_chart(x, [Band("a", "#123456", mean, mean - wide, mean + wide)]))
+    ends = ET.fromstring(profiles_chart(np.array([0.0, 1.0]), [Band("a", "#123456", *np.array([[-1.0, 5.0]] * 3))]))
+    first, last = _places(ends, "polyline")[0]
+    place = first + np.c_[x, (mean + 1.0) / 6.0] * (last - first)  # the band's lowest value is -1, the highest 5
+    lines = [[1, 2], [4, 4], [6, 7]]  # a value between two gaps is a dot
+    for found, expected in zip(_places(chart, "polyline"), lines, strict=True):
+        np.testing.assert_allclose(found, place[expected], atol=0.06)
+    bands = _places(chart, "polygon")
+    assert [len(found) for found in bands] == [4, 2, 2]  # the last two have no width
+    for found, (low, high) in zip(bands, [[1, 2], [4, 4], [7, 7]], strict=True):
+        assert (found[:, 0].min(), found[:, 0].max()) == pytest.approx((place[low, 0], place[high, 0]), abs=0.06)
+    alone = profiles_chart(x, [Band("a", "#123456", mean, np.full(8, nan), np.full(8, nan))])
+    assert len(_places(ET.fromstring(alone), "polyline")) == 3
+    assert profiles_chart(x, [Band("a", "#123456", *np.full((3, 8), nan))]) == ""
+
+
+def _places(chart, kind):
+    """Return the corners of a chart's lines or bands."""
+    return [
+        np.array([pair.split(",") for pair in one.get("points").split()], float)
+        for one in chart.iter(kind)
+        if "#123456" in (one.get("stroke"), one.get("fill"))
+    ]
+
+
 def test_facts_are_tables_with_units(scene):
     from pvfiblets.web.panels.tabs.info_tables import tables
 

@@ -106,7 +106,9 @@ def _is_surface(prop: vtkProp) -> bool:
 
 def _hides_by_depth(prop: vtkProp) -> bool:
     """Whether each sample of a prop is either opaque or not there, with single samples of a pixel."""
-    return (_is_ours(prop) or _is_surface(prop)) and not prop.HasTranslucentPolygonalGeometry()
+    # Lines of VTK are thinner without multisampling, but along rows and columns of pixels.
+    hides = _is_ours(prop) or _is_surface(prop) or getattr(prop, "along_pixels", False)
+    return hides and not prop.HasTranslucentPolygonalGeometry()
 
 
 def _is_ours(prop: vtkProp) -> bool:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 MOST_COLOURS = 65536  # entries of a look-up table
 
-MOST_WORDS = 64  # names of categories beside a scalar bar: of more, the bar shows the numbers, as names would not fit
+MOST_WORDS = 64  # names of categories beside a scalar bar: of more, the bar shows the colours alone
 
 
 def label_colours(count: int) -> list[Any]:
@@ -41,7 +41,8 @@ class ColourSettings:
 
     color: Any = None  # one colour for all, when no scalars are chosen
     cmap: Any = None  # as for `pyvista.Plotter.add_mesh`
-    clim: Any = None  # values of the first and the last colour; one number `x` means `(-x, x)`
+    # values of the first and the last colour; one number `x` means `(-x, x)`. Categories ignore it, and `log_scale`.
+    clim: Any = None
     n_colors: int = 256  # entries of the look-up table
     log_scale: bool = False  # spread the colours over the logarithm of the values
     nan_color: Any = None  # for NaN, and for values outside `clim`
@@ -83,15 +84,19 @@ def as_count(count: Any) -> int:
 
 def limits(settings: ColourSettings, scalars: Scalars) -> tuple[float, float]:
     """Return the values of the first and the last colour."""
-    if settings.clim is None:
+    if settings.clim is None or scalars.categories is not None:
         # A table of the user's own has a range, which `add_mesh` takes, too.
         own = isinstance(settings.cmap, pv.LookupTable)
         low, high = settings.cmap.scalar_range if own else scalars.colour_range
-        return _above_zero(low, high, scalars) if settings.log_scale else (float(low), float(high))
+        return _above_zero(low, high, scalars) if _is_log(settings, scalars) else (float(low), float(high))
     low, high = as_limits(settings.clim)
     if settings.log_scale and low <= 0.0:
         raise ValueError(f"clim begins at {low:g}; a logarithmic scale needs values above zero")
     return low, high
+
+
+def _is_log(settings: ColourSettings, scalars: Scalars) -> bool:
+    return bool(settings.log_scale) and scalars.categories is None
 
 
 def shared_limits(clim: Any, settings: ColourSettings, scalars: Scalars | None) -> tuple[float, float]:
@@ -135,7 +140,7 @@ def update_table(
     # The order matters: VTK refuses a logarithmic scale while the range touches zero.
     table.log_scale = False
     table.scalar_range = (low, high)
-    table.log_scale = bool(settings.log_scale)
+    table.log_scale = _is_log(settings, scalars)
     few = len(scalars.categories or ()) <= MOST_WORDS
     words = _first(settings.annotations, scalars.categories if few else None)
     if words is not None or not own:
@@ -179,7 +184,7 @@ def make_colouring(
         source=_source(scalars),
         lut=np.asarray(table.values, dtype=np.uint8),
         clim=tuple(table.scalar_range),
-        log_scale=bool(settings.log_scale),
+        log_scale=_is_log(settings, scalars),
         nan_color=pv.Color(table.nan_color).float_rgba,
         below_color=_rgba(table.below_range_color),
         above_color=_rgba(table.above_range_color),

@@ -113,7 +113,7 @@ class FibletSettings(Settings):
         row=Row("Fades by", "Opacity along the colour map.", type="choice", optional=True,
                 choices=[(None, "nothing"), ("linear", "value"), ("linear_r", "value, reversed"),
                          ("geom", "value, steep"), ("sigmoid", "value, a step")],
-                matters=shared.by_numbers),
+                matters=shared.by_numbers, scale=True),
     )  # fmt: skip
     transparency: Setting[str | int | None] = Setting(
         ALL,

@@ -114,7 +114,10 @@ def _add_actor(scene: PageScene, name: str, actor: Any, unable: list[str], *, co
     mapper = actor.GetMapper() if hasattr(actor, "GetMapper") else None
     if isinstance(mapper, FibletMapper):
         _add_fiblets(scene, name, actor, mapper, unable, controls=controls)
-    elif isinstance(mapper, TubeMapper) and controls and (mapper.reading.points or 0) <= MOST_TUBE_POINTS:
+    elif isinstance(mapper, TubeMapper) and (mapper.reading.points or 0) <= MOST_TUBE_POINTS:
+        unable += [f"{effect} of {name!r}" for effect in mapper.effects if effect != "normals"]
+        if not controls and actor.GetProperty().GetOpacity() < 1.0:  # the server shows their nearest surface alone
+            unable.append(f"the opacity of {name!r}")
         add_tubes(scene, name, actor, mapper)
         _add_bar(scene, actor, mapper)
     elif isinstance(mapper, EngineMapper):  # its data are no triangles

@@ -8,6 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets.mappers.frames.scene import to_array, world_planes
+from pvfiblets.mappers.line_data import COLOURS
 from pvfiblets.page.scene import PageScene, encoded
 
 if TYPE_CHECKING:
@@ -105,7 +106,9 @@ def add_tubes(scene: PageScene, name: str, actor: Any, mapper: TubeMapper) -> No
     # VTK names those of tubes otherwise, and drops them where balls are added.
     normals = surface.point_data.active_normals
     surface.point_data["Normals"] = surface.point_normals if normals is None else normals
-    add_surface(scene, name, actor, pv.DataSetMapper(surface), smooth=True)
+    shown = pv.DataSetMapper(surface)
+    shown.scalar_visibility = COLOURS in surface.point_data  # else radii would be colours
+    add_surface(scene, name, actor, shown, smooth=True)
 
 
 def _edges(prop: Any, surface: pv.PolyData, triangles: np.ndarray) -> dict[str, Any]:

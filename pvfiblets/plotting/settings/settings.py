@@ -48,6 +48,7 @@ class Row:
     read_only: bool = False
     resets: tuple[str, ...] = ()  # settings that go back to their defaults when this one changes
     matters: Callable[[Mapping[str, Any]], bool] | None = None  # whether it changes anything as the others are
+    scale: bool = False  # whether it is of a range of numbers, which categories such as groups lack
     volumes: bool = False  # whether the scene's volumes are choices, too
 
 

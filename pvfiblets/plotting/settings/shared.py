@@ -113,13 +113,13 @@ CMAP: Setting[Any] = Setting(
 
 CLIM_ROW = Row(
     "Range", "Values of the first and the last colour; empty: the range of the data.", type="range", optional=True,
-    read=lambda actor: list(actor.clim), matters=by_numbers,
+    read=lambda actor: list(actor.clim), matters=by_numbers, scale=True,
 )  # fmt: skip
 
 CLIM: Setting[tuple[float, float]] = Setting(
     None,
     "Values of the first and the last colour; ``None`` sets the range of the data.\n\n"
-    "It stays when the scalars change.",
+    "It stays when the scalars change. Categories, such as groups, have no range.",
     argument="Values of the first and the last colour; the range of the data by default.",
     kind=LIMITS,
     header="float or (float, float), optional",
@@ -142,7 +142,7 @@ LOG_SCALE: Setting[bool] = Setting(
     kind="bool",
     where=COLOURS,
     check=truth,
-    row=Row("Logarithmic", "Spread the colours over the logarithm of the values.", matters=by_numbers),
+    row=Row("Logarithmic", "Spread the colours over the logarithm of the values.", matters=by_numbers, scale=True),
 )
 
 NAN_COLOR: Setting[Any] = Setting(

@@ -64,7 +64,7 @@ class Pane:
         self._contours: dict[str, tuple[pv.PolyData, pv.Actor]] = {}
         self.slice = SliceActor()
         self._lines = pv.PolyData(np.zeros((8, 3)), lines=np.array([[2, 0, 1], [2, 2, 3], [2, 4, 5], [2, 6, 7]]))
-        self._cross = _unlit(self._lines, color, 1.0)
+        self._cross = _unlit(self._lines, color, 1.0, CrossHair)
         self._words = vtkCornerAnnotation()
         self._words.SetMaximumFontSize(15)
         self._words.SetNonlinearFontScaleFactor(0.6)
@@ -291,10 +291,16 @@ class Pane:
         self.renderer.RemoveViewProp(self._words)
 
 
-def _unlit(mesh: pv.PolyData, color: Any, width: float) -> pv.Actor:
+class CrossHair(pv.Actor):
+    """Lines along rows and columns of pixels."""
+
+    along_pixels = True  # which needs no multisampling (`pvfiblets.mappers.picture.antialias_coverage`)
+
+
+def _unlit(mesh: pv.PolyData, color: Any, width: float, kind: type[pv.Actor] = pv.Actor) -> pv.Actor:
     mapper = pv.DataSetMapper(mesh)
     mapper.SetScalarVisibility(False)
-    actor = pv.Actor(mapper=mapper)
+    actor = kind(mapper=mapper)
     actor.prop.lighting = False
     actor.prop.color = color
     actor.prop.line_width = width

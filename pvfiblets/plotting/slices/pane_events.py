@@ -11,14 +11,14 @@ import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pyvista as pv
 
 from pvfiblets.mappers.frames.observers import observe, weakly
 from pvfiblets.plotting.fiblets.mouse_gestures import Pointing
 
 if TYPE_CHECKING:
-    import numpy as np
-
+    from pvfiblets.plotting.slices.layer import SliceLayer
     from pvfiblets.plotting.slices.pane import Pane
     from pvfiblets.plotting.slices.workspace import Workspace
 
@@ -37,8 +37,9 @@ class PaneEvents:
 
     def __init__(self, workspace: Workspace, plotter: pv.BasePlotter) -> None:
         self._workspace = weakref.proxy(workspace)  # not kept alive
+        self.windowed: list[Callable[[SliceLayer], Any]] = []  # called after a drag that changed a layer's window
         self._interactor = plotter.iren.interactor
-        self._dragging: tuple[str, Pane, tuple[int, int]] | None = None
+        self._dragging: tuple[str, Pane] | None = None
         self._handle: int | None = None
         self._last = "axial"
         self._typed: str | None = None
@@ -92,7 +93,7 @@ class PaneEvents:
         pane = self._pane()
         if pane is None:
             return False
-        self._dragging = what, pane, self._pixel
+        self._dragging = what, pane
         if what == "move":
             self._handle = self._taken(pane)
             if self._handle is None:
@@ -116,6 +117,9 @@ class PaneEvents:
 
     def _release(self) -> bool:
         dragging, self._dragging = self._dragging, None
+        if dragging is not None and dragging[0] == "window":
+            for callback in self.windowed:
+                pv.try_callback(callback, self._workspace.active)
         if self._workspace.oblique is not None:
             self._workspace.oblique.hold(False)
         return dragging is not None
@@ -123,10 +127,9 @@ class PaneEvents:
     def _move(self) -> bool:
         if self._dragging is None:
             return False
-        what, pane, before = self._dragging
-        x, y = self._pixel
-        right, up = x - before[0], y - before[1]
-        self._dragging = what, pane, (x, y)
+        what, pane = self._dragging
+        # VTK's own last place: a window that gets another size within a drag moves it, too.
+        right, up = np.subtract(self._pixel, self._interactor.GetLastEventPosition())
         if what == "move":
             if self._handle is None:
                 self._go(pane)

@@ -148,6 +148,13 @@ class Workspace:
             raise ValueError(f"active is {layer!r}, which is no layer of the workspace")
         self._active = found
 
+    def on_window(self, callback: Callable[[SliceLayer], Any]) -> None:
+        """Call something with the layer whose window a drag of the right button has changed."""
+        if not callable(callback):
+            raise TypeError(f"callback is a {type(callback).__name__}; give a function of the layer")
+        if self._events is not None:
+            self._events.windowed.append(callback)
+
     @property
     def told(self) -> bool:
         """Whether the axial pane shows position and values in its corner."""

@@ -17,6 +17,9 @@
     if (!state()) return setTimeout(begin, 50);
     if (window.innerWidth < 900) set("left_open", false);
     if (window.innerWidth < 1400) set("right_open", false);
+    // On a phone both would lie in the same place.
+    for (const [one, other] of [["left_open", "right_open"], ["right_open", "left_open"]])
+      state().watch([one], (open) => { if (open && window.innerWidth < 760 && get(other)) set(other, false); });
     // A sentence that was read is not said again after a reload.
     try {
       if (sessionStorage.getItem("pvfiblets-said") === String(get("toast_number"))) set("toast_open", false);

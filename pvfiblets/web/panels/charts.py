@@ -9,6 +9,8 @@ from html import escape
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pvfiblets.query.measures.band_plot import runs
+
 WAY = "share of the streamline's length"
 COLOURS = ("#4e9ad6", "#e8953a", "#58b368", "#d65a7c", "#9d7fd1", "#b8a13b", "#5ec2c2", "#b0745a")
 
@@ -36,7 +38,7 @@ class Band:
 
     name: str  # its subject, and its colour
     color: str
-    mean: np.ndarray  # (n,): values; non-finite ones leave a gap
+    mean: np.ndarray  # (n,): values; non-finite ones leave a gap, also in the band alone
     low: np.ndarray
     high: np.ndarray
 
@@ -50,11 +52,11 @@ def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: A
 def profiles_chart(positions: ArrayLike, bands: Sequence[Band], title: str = "value") -> str:
     """Return several means with their bands over the same places; see :func:`profile_chart`."""
     x = np.asarray(positions, np.float64)
-    fine = [np.isfinite(one.mean) & np.isfinite(one.low) & np.isfinite(one.high) for one in bands]
-    if not any(some.any() for some in fine):
+    every = np.array([values for one in bands for values in (one.mean, one.low, one.high)], np.float64)
+    shown = every[np.isfinite(every) & np.isfinite(np.repeat(every[::3], 3, axis=0))]
+    if not shown.size:
         return ""
-    least = min(float(one.low[some].min()) for one, some in zip(bands, fine, strict=True) if some.any())
-    most = max(float(one.high[some].max()) for one, some in zip(bands, fine, strict=True) if some.any())
+    least, most = float(shown.min()), float(shown.max())
     reach = (most - least) or 1.0
     width, height, left, bottom = 290.0, 146.0, 58.0, 30.0
     named = escape(title if len(title) <= 24 else f"{title[:23]}…")
@@ -65,18 +67,24 @@ def profiles_chart(positions: ArrayLike, bands: Sequence[Band], title: str = "va
     def down(values: ArrayLike) -> np.ndarray:
         return height - bottom - (np.asarray(values) - least) / reach * (height - bottom - 6.0)
 
-    def drawn(one: Band, some: np.ndarray) -> str:
-        edge = np.concatenate(
-            [np.c_[across(x[some]), down(one.high[some])], np.c_[across(x[some]), down(one.low[some])][::-1]]
-        )
-        color = escape(one.color)
-        return (
-            f'<polygon points="{_points(edge)}" fill="{color}" opacity=".3"/>'
-            f'<polyline points="{_points(np.c_[across(x[some]), down(one.mean[some])])}" fill="none" stroke="{color}" '
-            'stroke-width="1.8"/>'
+    def drawn(one: Band) -> str:
+        color, known = escape(one.color), np.isfinite(one.mean)
+        edges = [
+            np.concatenate(
+                [np.c_[across(x[run]), down(one.high[run])], np.c_[across(x[run]), down(one.low[run])][::-1]]
+            )
+            for run in runs(known & np.isfinite(one.low) & np.isfinite(one.high))
+        ]
+        curves = [np.c_[across(x[run]), down(one.mean[run])] for run in runs(known)]
+        return "".join(
+            f'<polygon points="{_points(edge)}" fill="{color}" opacity=".3"/>' for edge in edges
+        ) + "".join(  # a line to the place itself is a dot
+            f'<polyline points="{_points(curve if len(curve) > 1 else curve.repeat(2, axis=0))}" fill="none" '
+            f'stroke="{color}" stroke-width="1.8" stroke-linecap="round"/>'
+            for curve in curves
         )
 
-    lines = "".join(drawn(one, some) for one, some in zip(bands, fine, strict=True))
+    lines = "".join(map(drawn, bands))
     ticks = "".join(_label(left - 4.0, float(down(value)) + 4.0, f"{value:.3g}", "end") for value in (least, most))
     ends = "".join(
         _label(float(across(share)), height - 17.0, text, anchor)
@@ -97,9 +105,9 @@ def profiles_chart(positions: ArrayLike, bands: Sequence[Band], title: str = "va
     step = (width - left - 6.0) / max(len(x) - 1, 1)
     told = "".join(
         f'<rect x="{float(across(a)) - step / 2:.1f}" y="0" width="{step:.2f}" height="{height - bottom:g}" '
-        f'fill="transparent"><title>{100.0 * a:.0f} % of the way: {_told(bands, fine, k)}</title></rect>'
+        f'fill="transparent"><title>{100.0 * a:.0f} % of the way: {_told(bands, k)}</title></rect>'
         for k, a in enumerate(x)
-        if any(some[k] for some in fine)
+        if any(np.isfinite(one.mean[k]) for one in bands)
     )
     subjects = ", ".join(one.name for one in bands if one.name != title)
     label = escape(f"{title} along {subjects or 'streamlines'}")
@@ -113,9 +121,9 @@ def _points(places: np.ndarray) -> str:
     return " ".join(f"{a:.1f},{b:.1f}" for a, b in places)
 
 
-def _told(bands: Sequence[Band], fine: Sequence[np.ndarray], place: int) -> str:
+def _told(bands: Sequence[Band], place: int) -> str:
     """Return the values at a place, for people."""
-    return ", ".join(_value(one, place) for one, some in zip(bands, fine, strict=True) if some[place])
+    return ", ".join(_value(one, place) for one in bands if np.isfinite(one.mean[place]))
 
 
 def _value(one: Band, place: int) -> str:

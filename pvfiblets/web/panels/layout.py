@@ -146,6 +146,15 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .v-snackbar__wrapper { min-width: 0 !important; max-width: min(672px, calc(100vw - 16px)) !important }
 .v-snackbar__content { overflow-wrap: anywhere }
 .pv-rail { display: flex; flex-direction: column; align-items: center; gap: 4px; padding: 6px 0 }
+/* On a phone a panel takes the lower half, and the picture stays above it. */
+@media (max-width: 759.9px) {
+  :is(#left, #right) { inset: auto 0 0 0 !important; width: auto !important; height: 50dvh !important;
+    border-width: 1px 0 0 }
+  :is(#left, #right):not(.v-navigation-drawer--active) { transform: translateY(110%) !important }
+  .v-navigation-drawer__scrim { display: none }
+  .pv-view.pv-above { bottom: 50dvh }
+  .pv-above .pv-told { left: 60px; max-width: calc(50% - 76px) } /* beside the tools */
+}
 .pv-scroll { overflow: hidden auto; min-height: 0 }
 .pv-row { display: grid; grid-template-columns: 104px 1fr; align-items: center; gap: 8px; padding: 3px 12px }
 .pv-row > label, .pv-row > .pv-label { font-size: 13px; line-height: 1.2; opacity: .85 }
@@ -365,7 +374,7 @@ def _view(app: Explorer) -> None:
     # A bright background needs dark letters, whatever the theme of the panels is.
     bright = "[1, 3, 5].reduce((sum, k) => sum + parseInt(background.slice(k, k + 2), 16), 0) > 382"
     with html.Div(
-        classes=("['pv-view', matrix.open ? 'pv-less' : '']",),
+        classes=("['pv-view', matrix.open ? 'pv-less' : '', left_open || right_open ? 'pv-above' : '']",),
         id="pv-view",
         data_ground=(f"{bright} ? 'light' : 'dark'",),
     ):

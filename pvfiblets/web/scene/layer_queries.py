@@ -123,7 +123,9 @@ class LayerQueries:
             s, actor = layer.settings, self.scene.actor(layer.id)
             entry: dict[str, Any] = {"layer": layer.id, "name": layer.name}
             title = s["scalars"] if layer.kind == "mesh" else actor.scalars_title
-            if title is not None:
+            if title is not None and getattr(actor, "shows_labels", False):
+                entry |= {"title": title, "cmap": s["cmap"], "names": list(actor.active_scalars.categories.values())}
+            elif title is not None:
                 clim = actor.mapper.scalar_range if layer.kind == "mesh" else actor.clim
                 entry |= {"title": title, "cmap": s["cmap"], "clim": clim, "log_scale": s.get("log_scale", False)}
             elif s.get("scalars") is None:

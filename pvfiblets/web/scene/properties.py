@@ -110,5 +110,6 @@ class Property(Row):
             "effective": effective,
             "choices": [{"value": choice, "title": title} for choice, title in self.choices_for(data, volumes)],
             "limits": None if span is None else [float(end) for end in span],
-            "matters": True if self.matters is None else bool(self.matters(settings)),
+            "matters": (self.matters is None or bool(self.matters(settings)))
+            and not (self.scale and getattr(actor, "shows_labels", False)),
         }

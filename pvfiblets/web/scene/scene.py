@@ -109,7 +109,7 @@ class Scene:
         self.queries = LayerQueries(self)
         self.cameras = Cameras(self)
         self.bars = Bars(plotter)
-        self.slicing = Slicing(plotter, self.images.turn_oblique)
+        self.slicing = Slicing(plotter, self.images.turn_oblique, self.images.keep_window)
         self.canvas = Canvas(self.slicing)
         self._listeners: list[Callable[[Change], None]] = []
         self._used = 0

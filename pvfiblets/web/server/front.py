@@ -37,8 +37,8 @@ LOGS = ("pvfiblets.web", "aiohttp.server", "asyncio")
 
 
 async def _unnamed(_request: web.Request, response: web.StreamResponse) -> None:
-    """Name the program without the versions of its libraries, which aiohttp tells everybody."""
-    response.headers["Server"] = "pvfiblets"
+    """Name the program without the versions of its libraries, of web sockets too."""
+    response.headers["Server"] = HEADERS["Server"]
 
 
 class FrontServer:

@@ -15,6 +15,7 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "same-origin",
     "Cache-Control": "no-store",
+    "Server": "pvfiblets",  # aiohttp would tell the versions of the libraries
 }
 
 STYLE = """

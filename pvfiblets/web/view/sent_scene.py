@@ -167,6 +167,7 @@ def _bars(scene: Scene) -> list[dict[str, Any]]:
             count = table.GetNumberOfAnnotatedValues()
             values = [table.GetAnnotatedValue(k).ToDouble() for k in range(count)]
             bar["names"] = [str(table.GetAnnotation(k)) for k in range(count)]
-            bar["colours"] = [[round(255 * part) for part in table.map_value(value)[:3]] for value in values]
+            named = [[round(255 * part) for part in table.map_value(value)[:3]] for value in values]
+            bar["colours"] = named or colours[:, :3].tolist()  # too many to be named
         found.append(bar)
     return found

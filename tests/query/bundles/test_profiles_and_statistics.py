@@ -111,6 +111,28 @@ def test_arrays_measures_and_groups_have_profiles(lines):
     plt.close(axes.figure)
 
 
+def test_plots_break_where_values_are_missing():
+    import matplotlib.pyplot as plt
+
+    x, mean = np.linspace(0.0, 1.0, 7), np.array([0.0, 1.0, np.nan, 3.0, 4.0, np.nan, 2.0])
+    axes = bundles.TractProfile(mean, mean, mean - 1, mean + 1, x, np.zeros((7, 3)), "fa").plot()
+    try:
+        (band,) = axes.collections
+        ends = [(path.vertices[:, 0].min(), path.vertices[:, 0].max()) for path in band.get_paths()]
+        np.testing.assert_allclose(ends, [(x[0], x[1]), (x[3], x[4]), (x[6], x[6])])
+        line, dots = axes.lines
+        np.testing.assert_array_equal(line.get_ydata(), mean)  # matplotlib draws nothing to a NaN
+        assert dots.get_xydata().tolist() == [[x[6], 2.0]]  # nor a value between two of them
+        assert dots.get_color() == line.get_color()
+        axes.figure.canvas.draw()
+        shown = np.asarray(axes.figure.canvas.buffer_rgba())[..., :3].astype(int)
+        column = round(axes.transData.transform((x[2], 0.0))[0])
+        inside = slice(None), slice(column - 3, column + 3)
+        assert (shown[inside].max(axis=2) - shown[inside].min(axis=2)).max() < 20  # no colour
+    finally:
+        plt.close(axes.figure)
+
+
 def test_what_has_no_profile_is_told(lines, image):
     made = Streamlines.from_list([*lines[:3], np.zeros((0, 3))])
     for call, error, says in (

@@ -70,6 +70,12 @@ class SliceImages:
             self.scene.cameras.refit()
         return self.scene.slicing.view
 
+    def keep_window(self, shown: Any) -> None:
+        """Store the window that a drag in a pane has given an image."""
+        layer = next((one for one in self.scene.layers if self.scene.actor(one.id) is shown), None)
+        if layer is not None:
+            self.scene.set(layer.id, "clim", list(shown.clim))
+
     def turn_oblique(self, angles: tuple[float, float], drag: int | None = None) -> None:
         """Store the angles that the oblique slice was turned to by hand; turns of one drag are one step to undo."""
         key = ("oblique",) if drag is None else ("oblique", f"drag {drag}")

@@ -136,12 +136,14 @@ class Slicing:
     """The images of a scene, as slices in its plotter."""
 
     def __init__(
-        self, plotter: pv.BasePlotter, turned: Callable[[tuple[float, float], int | None], Any] = lambda *_: None
-    ) -> None:
+        self,
+        plotter: pv.BasePlotter,  # of the views `NAMES`, or of the first four, if there is to be an image
         # called with the angles of the oblique slice when it was turned by hand, and which drag of a handle does it,
         # None for none
-        # of the views `NAMES`, or of the first four, if there is to be an image
-        self._plotter, self._turned = plotter, turned
+        turned: Callable[[tuple[float, float], int | None], Any] = lambda *_: None,
+        windowed: Callable[[Any], Any] = lambda _: None,  # called with a layer whose window a drag has changed
+    ) -> None:
+        self._plotter, self._turned, self._windowed = plotter, turned, windowed
         self._view = SliceView()
         self._glyphs = GlyphLayers()
         self.workspace: Any = None  # none as long as there is no image
@@ -265,6 +267,7 @@ class Slicing:
             )
             self._smooth_alike()
             self.workspace.told = False  # the page says it
+            self.workspace.on_window(self._windowed)
             found = self.workspace.slices.layers[0]
             self.view = self._view
         else:
