@@ -18,7 +18,7 @@ from pvfiblets.mappers.effects.line_tubes import SurfaceNormals
 from pvfiblets.mappers.engine_mapper import FilteredMapper
 from pvfiblets.mappers.engine_options import Options
 from pvfiblets.mappers.frames.scene import Frame
-from pvfiblets.mappers.line_data import SIDES, STEPS
+from pvfiblets.mappers.line_data import SIDES, STEPS, segment_ids
 from pvfiblets.mappers.picking import nearest_pixel
 
 if TYPE_CHECKING:
@@ -116,7 +116,8 @@ class TubeMapper(FilteredMapper[TubeOptions]):
         return not self._drawn.n_segments
 
     def _readable_points(self) -> int | None:
-        return int(self._drawn.n_segments * STEPS * SIDES)
+        runs = len(segment_ids(self._drawn)[0])
+        return SIDES * (STEPS * self._drawn.n_segments + runs)
 
     def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> vtkPolyData:
         from pvfiblets.mappers.drawn_lines import tube_lines

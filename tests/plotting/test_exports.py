@@ -172,6 +172,15 @@ def test_tubes_are_surfaces_and_halos_lines(plotter, three_lines, tmp_path):
     assert len(colours) == len(points)
 
 
+@pytest.mark.parametrize("count", [1, 7])
+def test_no_tube_of_few_is_left_out(plotter, count, tmp_path):
+    lines = [np.column_stack([np.linspace(0, 10, 9), np.full(9, 5.0 * i), np.zeros(9)]) for i in range(count)]
+    plotter.add_spline_tubes(lines, radius=1.0)
+    ((points, *_),) = gltf(plotter, tmp_path)
+    heights = np.unique(np.round(points[:, 1] / 5.0).astype(int))
+    assert heights.tolist() == list(range(count))
+
+
 def test_what_cannot_be_held_is_told(plotter, fiblets, tmp_path):
     plotter.add_fiblets(fiblets, scalars="density", show_scalar_bar=False)
     plotter.add_raycast_volume(np.arange(64.0).reshape(4, 4, 4), name="brain")
