@@ -223,6 +223,8 @@ class Explorer(TrameApp):
             chosen = scene.layer(page.chosen) if page.chosen else None
             page.chosen_name = chosen.name if chosen is not None else ""
             page.chosen_kind = chosen.kind if chosen is not None else ""
+            if chosen is not None and chosen.kind == "image":
+                scene.slicing.workspace.active = scene.actor(chosen.id)  # whose window the right button changes
             page.groups = describe.groups(scene.queries.properties(page.chosen)) if page.chosen else []
             page.range_chart = self._charts.of_range(page.chosen)
             page.undo_label = self.history.undo_label or ""

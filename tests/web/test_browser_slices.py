@@ -106,18 +106,38 @@ def test_a_t1_is_opened_gone_through_and_found_again(revisit):
     assert told(here) == [20.0, 24.0, 28.0]
 
 
+def window(here, name):
+    """Choose an image, and return its window."""
+    here.page.click(f"[data-layer]:has-text('{name}')")
+    here.wait(lambda: here.state("chosen_name") == name, "the image's settings")
+    groups = here.state("groups")
+    return next(one["effective"] for group in groups for one in group["properties"] if one["name"] == "clim")
+
+
+def test_the_right_button_changes_the_chosen_image(revisit):
+    here = revisit("lines.fiblets")
+    names = "head.nii.gz", "other.nii.gz"
+    shutil.copy(*(here.served.root / name for name in names))
+    for name in names:
+        sliced(here, name)
+    before = [window(here, name) for name in names]
+    for number, name in enumerate(names):
+        window(here, name)
+        here.page.mouse.move(*pixel(here, "axial", 0.4, 0.4))
+        here.page.mouse.down(button="right")
+        here.page.mouse.move(*np.add(pixel(here, "axial", 0.4, 0.4), (30, 20)), steps=4)
+        here.page.mouse.up(button="right")
+        here.wait(lambda name=name, number=number: window(here, name) != before[number], "another window")
+        if number == 0:
+            assert window(here, names[1]) == before[1]
+
+
 def test_the_mouse_does_in_a_pane_what_the_table_says(revisit):
     """The table of docs/slices.md, but for the left button and the wheel alone."""
     here = revisit("lines.fiblets")
     sliced(here)
-    here.page.click("[data-layer]:has-text('head.nii.gz')")
-    here.wait(lambda: here.state("chosen_kind") == "image", "the image's settings")
     at = told(here)
     mouse, keys = here.page.mouse, here.page.keyboard
-
-    def window():
-        groups = here.state("groups")
-        return next(one["effective"] for group in groups for one in group["properties"] if one["name"] == "clim")
 
     def drag(button, *held, by=(30, 20)):
         x, y = pixel(here, "axial", 0.4, 0.4)
@@ -140,12 +160,12 @@ def test_the_mouse_does_in_a_pane_what_the_table_says(revisit):
         bright = picture[rows, columns].min(axis=2) > 200  # a disc in the middle of the image
         return [found.mean() for found in np.nonzero(bright)], np.sqrt(bright.mean())
 
-    before = window()
+    before = window(here, "head.nii.gz")
     drag("right")
-    here.wait(lambda: window() != before, "another window")
+    here.wait(lambda: window(here, "head.nii.gz") != before, "another window")
     assert told(here) == at
     here.press("Control+z")
-    here.wait(lambda: window() == before, "the window again")
+    here.wait(lambda: window(here, "head.nii.gz") == before, "the window again")
     (middle, size) = disc()
     for button, held in (("left", ["Shift"]), ("middle", [])):
         drag(button, *held)
