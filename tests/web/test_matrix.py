@@ -240,13 +240,13 @@ def test_sessions_and_scripts_have_nodes_and_edges(desk, folder):
 
 def test_work_is_stopped_and_not_begun_again(desk, monkeypatch):
     monkeypatch.setattr(kernels, "TOGETHER", 10)
-    whole = kernels._end_points
+    whole = kernels.end_points
 
     def slow(data):
         desk.files.cancel()
         return whole(data)
 
-    monkeypatch.setattr(kernels, "_end_points", slow)
+    monkeypatch.setattr(kernels, "end_points", slow)
     make(desk)
     assert desk.scene.state.matrix is None
     assert "cancelled" in desk.said[-1][1]

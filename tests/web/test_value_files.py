@@ -194,9 +194,10 @@ def plotted(desk):
     """Return the tab's curves of values along bundles: (positions, values) by colour, read from the picture's axes."""
     chart = ET.fromstring(desk.page.bundles["along"]["chart"])
     assert chart.get("role") == "img"
-    curves = {one.get("stroke"): one for one in chart.iter("polyline") if one.get("stroke") != "currentColor"}
-    places = {stroke: np.array([pair.split(",") for pair in one.get("points").split()], float)
-              for stroke, one in curves.items()}  # fmt: skip
+    runs = [one for one in chart.iter("polyline") if one.get("stroke") != "currentColor"]  # between missing values
+    texts = {stroke: " ".join(one.get("points") for one in runs if one.get("stroke") == stroke)
+             for stroke in [one.get("stroke") for one in runs]}  # fmt: skip
+    places = {stroke: np.array([pair.split(",") for pair in text.split()], float) for stroke, text in texts.items()}
     low, high = (text for text in chart.iter("text") if text.get("text-anchor") == "end" and "%" not in text.text)
     (first, last), ends = (sorted(float(one.get("x")) for one in chart.iter("text") if one.text in ("0 %", "100 %")),
                            [float(one.get("y")) - 4.0 for one in (low, high)])  # fmt: skip
