@@ -70,7 +70,7 @@ def calls_of_a_frame(chunks, pipeline):
 
 @pytest.mark.skipif(not possible(), reason="calls are recorded on x86-64 and Linux only")
 @pytest.mark.more
-@pytest.mark.parametrize(("pipeline", "most"), [("compute", 105), ("geometry", 12)])
+@pytest.mark.parametrize(("pipeline", "most"), [("compute", 105), ("geometry", 15)])
 def test_a_chunk_more_asks_little_of_opengl(gl, pipeline, most):
     """Whatever the graphics card, the processor makes these calls in every picture for each chunk."""
     few, many = (calls_of_a_frame(chunks, pipeline) for chunks in (1, 3))

@@ -48,10 +48,10 @@ uint tube_edges(Tube t, vec4 c0, vec4 c1, vec2 pixel, Hit hit) {
 #endif
 
 #if !(FEATURE_TUBES || FEATURE_WIDE_LINES)
-// Where in their pixels the ends of a segment lie.
+// Where in their pixels the ends of a segment lie, rounded so that pages find the same (shaders/page/segment_pixels.glsl).
 vec4 parts_of(ClippedSegment piece) {
     vec4 at = vec4(in_picture(piece.a), in_picture(piece.b));
-    return at - floor(at);
+    return floor((at - floor(at)) * 256.0) / 256.0;
 }
 
 // first, last: pixels of the segment's ends; at: this one, from the first; parts: where in their pixels the ends lie. No branch: it
