@@ -34,7 +34,7 @@ def observe(
 
 
 def weakly(method: Callable[..., Any], *, passing: bool = False) -> Callable[..., Any]:
-    """Return what calls a method while its object lives: without what it is called with, unless that is passed on."""
+    """Return a function that calls a method while its object lives; it passes arguments on only if asked to."""
     reference = weakref.WeakMethod(method)
 
     def call(*arguments: Any) -> Any:

@@ -320,7 +320,7 @@ class RasterPipeline(abc.ABC):
         return self._programs.render(self._stages(request), [*self._features(request), *features])
 
     def _features(self, request: DrawRequest) -> list[str]:
-        """Features of programs that draw lines: of the nearest, none that tells where they are and what they show."""
+        """Features of the programs that draw lines; values, edges and places across are found by :meth:`_resolve`."""
         culling = (request.occlusion.feature,) if request.occlusion is not None else ()
         clipping = ("CLIPPING", "CLIPPING_DEPTH") if request.clipping else ()
         values = request.values if "PAINTED" in request.gathering else ()
