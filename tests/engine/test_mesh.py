@@ -62,7 +62,7 @@ def test_the_compiler_sees_every_stage(tmp_path):
 def test_outputs_are_within_what_opengl_promises(tmp_path, kind, drawn):
     """256 vertices, 512 primitives, 16 KiB of outputs and shared memory; as many as the shares need."""
     summed = ["GATHER", "GATHER_SLICES", "PAINTED", "VALUES_ARC_LENGTH"]
-    features = ["DIRECTION", "LATTICE", "WIDE_LATTICE", *summed, *DRAWN[drawn]]
+    features = ["DIRECTION", "LATTICE", "WIDE_LATTICE", "SPLINE", *summed, *DRAWN[drawn]]
     source = tmp_path / "stage.mesh"
     source.write_text(assemble(f"fiblets/mesh/{kind}.mesh", features, CONSTANTS))
     text = subprocess.run([glslang(), "-E", source], capture_output=True, text=True, check=True).stdout

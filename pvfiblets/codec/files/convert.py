@@ -170,9 +170,10 @@ def compress_file(
             encoder.parameters = replace(encoder.parameters, promise=tracts.promise)
         header_set = whole.without_records(encoder, pages, found)
         members = spool.members()
-        header, more = make_header(header_set, {k: members.pop(k) for k in whole.per_point})
+        mapped = spool.mapped(header_set)
+        told = replace(header_set, decoding=mapped.decoding)
+        header, more = make_header(told, {k: members.pop(k) for k in whole.per_point})
         if prepare is not None:
-            mapped = spool.mapped(header_set)
             prepare(mapped)
             members |= index_members(mapped)
         write(target, header, members | more, small=small)
