@@ -147,9 +147,9 @@ def test_pictures_of_lattices(gl, monkeypatch, fabricate, lines, camera, kind, w
     assert_alike(together, expected)
 
 
-@pytest.fixture(scope="module")
-def brain():
-    return compress(synthetic.brain_streamlines(300, 0.5, seed=5, fa=True), per_point=("fa",))
+@pytest.fixture(scope="module", params=["fast", "small"])
+def brain(request):
+    return compress(synthetic.brain_streamlines(300, 0.5, seed=5, fa=True), per_point=("fa",), effort=request.param)
 
 
 @pytest.mark.few(1)

@@ -1,4 +1,4 @@
-"""Compiled kernels: fiblets of cubic splines.
+"""Compiled kernels: fiblets of cubic splines (outlook of Russig et al. 2020, section 5: segments merged within a bound).
 
 Symbols, in units of the lattice's edge about the fiblet's anchor
     P, v         place and slope (per point) where a piece begins; the first slope is in the record

@@ -79,12 +79,13 @@ vec4 turned(vec4 a, vec4 t) {
 
 #if FEATURE_SPLINE
 // A fiblet of cubic pieces end to end (this program's own; pvfiblets/codec/kernels/spline_kernels.py has the symbols): from a place
-// and a slope, points m = 1 .. n at place + m slope + x^2 (d - 2 e) + 2 e x^3, with x = m / n.
+// and a slope, points m = 1 .. n at place + m slope + x^2 (d - 2 e) + 2 e x^3, with x = m / n. In powers of m a point takes three
+// products.
 struct Spline {
     vec3 place;    // in units of the lattice's edge, from the anchor
     vec3 slope;    // a point
-    vec3 d;
-    vec3 e;
+    vec3 square;   // (d - 2 e) / n^2
+    vec3 cube;     // 2 e / n^3
     uint n;
     uint byte;     // where the next node stands
 };
@@ -97,8 +98,11 @@ vec3 signed_bits(int word, int low, int count) {
 void load_node(inout Spline s) {
     int low = int(codes_at(s.byte)), high = int(codes_at(s.byte + 2u));
     s.n = max(uint(low) & 63u, 1u);
-    s.d = signed_bits(low, 6, FIBLET_NODE_BITS);
-    s.e = signed_bits(high, 11, FIBLET_NODE_BITS);
+    vec3 d = signed_bits(low, 6, FIBLET_NODE_BITS), e = signed_bits(high, 11, FIBLET_NODE_BITS);
+    precise float share = 1.0 / float(s.n);
+    precise vec3 square = (d - 2.0 * e) * share * share, cube = 2.0 * e * share * share * share;
+    s.square = square;
+    s.cube = cube;
     s.byte += FIBLET_NODE_BYTES;
 }
 
@@ -113,18 +117,18 @@ Spline begin_spline(uvec3 words, uint byte) {
     return s;
 }
 
-void next_piece(inout Spline s) {
-    float n = float(s.n);
-    precise vec3 place = s.place + n * s.slope + s.d, slope = s.slope + 2.0 * (s.d + s.e) / n;
-    s.place = place;
-    s.slope = slope;
-    load_node(s);
+vec3 spline_point(Spline s, uint m) {
+    float t = float(m);
+    precise vec3 p = s.place + t * (s.slope + t * (s.square + t * s.cube));
+    return p;
 }
 
-vec3 spline_point(Spline s, uint m) {
-    float x = float(m) / float(s.n);
-    precise vec3 p = s.place + float(m) * s.slope + x * x * ((s.d - 2.0 * s.e) + 2.0 * x * s.e);
-    return p;
+void next_piece(inout Spline s) {
+    float n = float(s.n);
+    precise vec3 slope = s.slope + n * (2.0 * s.square + 3.0 * n * s.cube);
+    s.place = spline_point(s, s.n);
+    s.slope = slope;
+    load_node(s);
 }
 
 // Point i >= 1 of a fiblet.
