@@ -75,6 +75,20 @@ def errors() -> Figure:
     return in_panels(study, records, finished)
 
 
+def size() -> Figure:
+    """Largest error against bytes of a point, of methods that lose something."""
+    study = Report.load(FOLDER / "report" / "amd-epyc").studies[0]
+    axis = study.axes[0]
+    lossy = ("fiblets", "QFib", "paper's fiblets", "float16", "int16 over bounds", "dipy linearised")
+    sets = [f"noisy, {step} mm" for step in (0.1, 0.2, 0.5, 1)]
+    drawn = [one for one in study.records if one.data in sets and one.method in lossy]
+    found = arranged(drawn, lambda one: (one.data, one.method, one.in_unit(axis.x), one.in_unit(axis.y)))
+    for one in drawn:
+        if one.default:
+            found[one.data]["default"] = [(one.in_unit(axis.x), one.in_unit(axis.y))]
+    return grid(found, axis.x_label, axis.y_label, "none")
+
+
 def frames() -> Figure:
     """Time of a frame by number of segments, on the processor and on the card."""
     figure, (*row,) = panels(2, 2)
@@ -153,7 +167,7 @@ def volume() -> Figure:
 
 
 def volume_errors() -> Figure:
-    """Error of colours against time, by what was changed."""
+    """Error of colours against time, by the changed setting."""
     drawn = [one for one in results("volume-errors") if one["filter"] == "trilinear"]
     found = arranged(drawn, lambda one: (MODES[one["mode"]], one["varied"], one["cpu_ms"], one["rms"]))
     return grid(found, "CPU ms per frame", "rms error of colours", "none")
@@ -194,7 +208,7 @@ def grid(found: dict[str, dict[str, list[tuple[float, float]]]], x: str, y: str,
     colours = {**dict(zip(names, PALETTE, strict=False)), "default": "#000000"}
     for place, (title, members) in enumerate(found.items()):
         for name, points in members.items():
-            marker = {"marker": "*", "ms": 13, "zorder": 3} if name == "default" else {"marker": "o", "ms": 4}
+            marker = {"marker": "*", "ms": 13, "zorder": 3} if name == "default" else {"marker": "o", "ms": 5}
             row[place].plot(*zip(*points, strict=True), color=colours[name], label=name, ls=ls, **marker)
         axes(row[place], x, "" if place % columns else y, title)
     for panel in row[len(found) :]:
@@ -229,7 +243,7 @@ def in_browser(program: str, column: str) -> list[tuple[float, float]]:
 
 def main() -> None:
     """Write the plots."""
-    drawn = {f"results-{plot.__name__}": plot for plot in (errors, frames, memory, pages)}
+    drawn = {f"results-{plot.__name__}": plot for plot in (errors, size, frames, memory, pages)}
     for plot in (tubes, tube_errors, volume, volume_errors, volume_integrators, halo_errors):
         drawn[f"{plot.__name__.replace('_', '-')}-llvmpipe"] = plot
     for name, plot in drawn.items():
