@@ -42,7 +42,7 @@ SCENES = ("brain of 1,100,000 segments", "brain of 6,000,000 segments", "tubes",
 
 def panels(rows: int, columns: int) -> tuple[Figure, Any]:
     """Return a figure and its panels."""
-    figure = Figure(figsize=(9.0, 3.0 * rows), layout="constrained")
+    figure = Figure(figsize=(7.6, 2.7 * rows), layout="constrained")
     return figure, figure.subplots(rows, columns).flat
 
 
@@ -55,8 +55,8 @@ def axes(panel: Any, x: str, y: str, title: str) -> None:
         low, high = axis.get_view_interval()
         axis.set_minor_locator(NullLocator())
         if low > 1e-4 and high < 1e5:
-            subs = (1.0, 2.0, 5.0) if high < 30.0 * low else (1.0, 3.0) if high < 300.0 * low else (1.0,)
-            axis.set_major_locator(LogLocator(subs=subs))
+            subs = (1.0, 2.0, 5.0) if high < 20.0 * low else (1.0, 3.0) if high < 300.0 * low else (1.0,)
+            axis.set_major_locator(LogLocator(subs=subs, numticks=12))
             axis.set_major_formatter(FuncFormatter(lambda number, _: f"{number:,g}"))
 
 
@@ -72,7 +72,10 @@ def errors() -> Figure:
     study = Report.load(FOLDER / "report" / "intel-xeon-antialias").studies[0]
     records = [one for one in study.records if one.data.startswith(tuple(f"{name}," for name in SCENES))]
     (finished,) = (pair for pair in study.axes if pair.key == "rest")
-    return in_panels(study, records, finished)
+    figure = in_panels(study, records, finished)
+    for text in figure.legends[0].get_texts():
+        text.set_fontsize(9.5)
+    return figure
 
 
 def size() -> Figure:
