@@ -9,6 +9,8 @@ from argparse import ArgumentParser
 from pathlib import Path
 
 import pyvista
+from docutils.nodes import document
+from sphinx.application import Sphinx
 
 import pvfiblets
 from pvfiblets.cli.command import make_parser
@@ -54,6 +56,7 @@ html_theme_options = {
     "header_links_before_dropdown": 6,
 }
 html_sidebars = {page: [] for page in ("tutorial", "contributing")}  # single pages, with none beside them
+html_context = {"default_mode": "auto"}  # the browser's light or dark
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_show_sourcelink = False
@@ -104,4 +107,17 @@ sphinx_gallery_conf = {
     "abort_on_example_error": True,
     "remove_config_comments": True,
     "min_reported_time": 0,
+    "capture_repr": (),  # an image array that ends a script is no output
 }
+
+
+def hide_tables(app: Sphinx, _doctree: document) -> None:
+    """Keep the tables of records out of the search: their many words would come before the pages that explain them."""
+    name = app.env.docname
+    if name.startswith("benchmarks/") and name not in ("benchmarks/README", "benchmarks/details"):
+        app.env.metadata[name]["nosearch"] = ""
+
+
+def setup(app: Sphinx) -> None:
+    """Let Sphinx call the function above."""
+    app.connect("doctree-read", hide_tables)

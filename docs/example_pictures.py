@@ -18,7 +18,7 @@ ARGUMENTS = {"23_tracts_in_their_anatomy": [DATA / "nv_MNI152_2009_template.nii.
 WIDTH = 1600  # pixels at most: a page is half as wide, on a sharp screen
 QUALITY = 88
 
-# Picture of the docs: examples and what they call it, side by side where there are several.
+# Picture of the docs: examples and their names for it, side by side where there are several.
 PICTURES: dict[str, tuple[tuple[str, str], ...]] = {
     "brain": (("01_first_picture", "first_picture"), ("03_colours", "colours")),
     "pictures/cut": (("09_cut", "cut"),),

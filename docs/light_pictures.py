@@ -34,7 +34,7 @@ TO_VIEW = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]])
 VIEWER = np.array([0.0, 0.0, 1.0])
 SHOULDER = np.array([-1.0, 1.0, 1.0]) / np.sqrt(3.0)
 
-# VTK's light kit, which a plotter has unless it is told otherwise: directions to the lights, and intensities.
+# VTK's light kit, a plotter's default: directions to the lights, and intensities.
 KIT = [
     ((0.0, 0.0, 1.0), 0.25),
     ((0.1116, 0.7660, 0.6330), 0.75),
@@ -111,7 +111,7 @@ def view_of(bounds: tuple[float, ...]) -> View:
 
 
 def panels() -> dict[str, Array]:
-    """Return each light's picture, ``(height, width, 3)`` of 0 to 1, and print what it leaves."""
+    """Return each light's picture, ``(height, width, 3)`` of 0 to 1, and print the brightness that it leaves."""
     drawn = fiblets()
     context = bare_context()
     renderer = FibletRenderer(context, drawn)

@@ -106,7 +106,7 @@ def _head() -> Path | None:
 
 
 def _atlas(path: Path, points: np.ndarray) -> None:
-    """Write made-up parcels, blocks of the brain, and what they are called."""
+    """Write made-up parcels, blocks of the brain, and their names."""
     import nibabel
 
     side = 4.0

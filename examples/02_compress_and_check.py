@@ -1,7 +1,7 @@
 """Compress and check
 ==================
 
-Compress a tractogram, look at what that costs, store it and open it again.
+Compress a tractogram, measure the error of every point, save the result and open it again.
 
 Run it as ``python examples/02_compress_and_check.py [FOLDER]``.
 """

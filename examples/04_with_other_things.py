@@ -1,7 +1,7 @@
 """Among meshes
 ============
 
-Streamlines among other things: a translucent surface around them, an opaque one within.
+Streamlines with meshes: a translucent surface around them, and an opaque one inside.
 
 Run it as ``python examples/04_with_other_things.py [FOLDER]``.
 """

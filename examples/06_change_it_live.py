@@ -1,7 +1,7 @@
 """Change settings live
 ====================
 
-An actor's properties change at any time, and the next render shows it.
+Change an actor's properties at any time; the next render shows them.
 
 Run it as ``python examples/06_change_it_live.py [FOLDER]``.
 """

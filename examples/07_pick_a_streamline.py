@@ -1,7 +1,7 @@
 """Pick a streamline
 =================
 
-Ask which streamline a pixel shows, and draw that one thick.
+Find the streamline at a pixel, and draw it thick.
 
 Run it as ``python examples/07_pick_a_streamline.py [FOLDER]``.
 """

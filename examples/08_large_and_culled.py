@@ -1,7 +1,7 @@
 """Large sets and culling
 ======================
 
-Many lines: what this machine's OpenGL can draw with, what culling leaves out, and that it loses nothing.
+Many lines: list the pipelines of this machine, count the culled fiblets, and check that culling changes no pixel.
 
 Run it as ``python examples/08_large_and_culled.py [FOLDER]``.
 """

@@ -1,9 +1,9 @@
 """Shading
 =======
 
-Shade lines: by the scene's lights, as illuminated lines, with ambient occlusion, depth cueing, halos; as tubes.
+Shade lines by the scene's lights, as illuminated lines, by ambient occlusion, by depth cueing and halos, or as tubes.
 
-Run it as ``python examples/12_shading.py [FOLDER]``. Each of these is off, and costs nothing, until it is set.
+Run it as ``python examples/12_shading.py [FOLDER]``. All but the lights are off by default, and cost nothing then.
 """
 
 import sys

@@ -1,7 +1,7 @@
 """More colours
 ============
 
-Colour by a volume sampled on the GPU, by a distance, by the coding error; and look through layers.
+Colour by a volume, by a distance and by the coding error; and show four translucent layers.
 
 Run it as ``python examples/13_more_colours.py [FOLDER]``.
 """

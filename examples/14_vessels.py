@@ -3,7 +3,7 @@
 
 A tree of vessels as spline tubes: coloured by radius, cut by a plane, and from inside.
 
-Run it as ``python examples/14_vessels.py [FOLDER]``. Centre lines of VMTK, with their radii, need the same calls.
+Run it as ``python examples/14_vessels.py [FOLDER]``. Centre lines of VMTK, with their radii, take the same calls.
 """
 
 import sys

@@ -1,7 +1,7 @@
 """A furball
 =========
 
-The paper's largest set made anew, 787,327 segments, and which one of them a pixel shows.
+A set like the paper's largest, of 787,327 segments, and the segment at a pixel.
 
 Run it as ``python examples/16_furball.py [FOLDER]``.
 """

@@ -3,7 +3,7 @@
 
 Fibre tracts as ink on paper: bundles are dark strands, with gaps where one passes behind another.
 
-Run it as ``python examples/17_halos_of_fibres.py [FOLDER]``. Pictures like figures 1, 7 and 10 of Everts et al. 2009.
+Run it as ``python examples/17_halos_of_fibres.py [FOLDER]``. Images like figures 1, 7 and 10 of Everts et al. 2009.
 """
 
 import sys

@@ -1,9 +1,9 @@
 """Halos of air
 ============
 
-Air currents in an office, as ink on paper; the second picture is for red-cyan glasses, red on the left eye.
+Air currents in an office, as ink on paper; the second image is for red-cyan glasses, red on the left eye.
 
-Run it as ``python examples/18_halos_of_air.py [FOLDER]``. Pictures like figures 8 and 11 of Everts et al. 2009.
+Run it as ``python examples/18_halos_of_air.py [FOLDER]``. Images like figures 8 and 11 of Everts et al. 2009.
 """
 
 import sys

@@ -3,7 +3,7 @@
 
 A scanned surface as a cloud of points: gaps where one part of it passes in front of another, and no mesh at all.
 
-Run it as ``python examples/19_halos_of_a_scan.py [FOLDER]``. Pictures like figure 15 of Everts et al. 2009. The
+Run it as ``python examples/19_halos_of_a_scan.py [FOLDER]``. Images like figure 15 of Everts et al. 2009. The
 surface is that of the bones in PyVista's frog, which was cut into slices and photographed.
 """
 

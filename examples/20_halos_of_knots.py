@@ -1,9 +1,9 @@
 """Halos of knots
 ==============
 
-Knots as in a book of mathematics, for a printer of black and white, and the three displacement functions.
+Knots as in a book of mathematics, for a black-and-white printer, and the three displacement functions.
 
-Run it as ``python examples/20_halos_of_knots.py [FOLDER]``. Pictures like figures 16 and 17 of Everts et al. 2009.
+Run it as ``python examples/20_halos_of_knots.py [FOLDER]``. Images like figures 16 and 17 of Everts et al. 2009.
 """
 
 import sys

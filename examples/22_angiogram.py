@@ -3,7 +3,7 @@
 
 Vessels in a volume: as a surface, by the greatest and by the first peak on each ray, and as light through a medium.
 
-Run it as ``python examples/22_angiogram.py [FOLDER]``. Pictures like figures 5 and 6 of Lesar 2015.
+Run it as ``python examples/22_angiogram.py [FOLDER]``. Images like figures 5 and 6 of Lesar 2015.
 """
 
 import sys

@@ -1,7 +1,7 @@
 """A connectome
 ============
 
-Nodes are parcels. Radius and colour of an edge show how many streamlines connect two; on the right it is their mean.
+Nodes are parcels. An edge shows the number of its streamlines by radius and colour; on the right it is their mean.
 
 Run it as ``python examples/29_connectome.py [FOLDER]``.
 """

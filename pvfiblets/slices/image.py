@@ -25,7 +25,7 @@ SAMPLED = 1_000_000  # number of voxels for percentiles; of larger images every 
 
 @dataclass(frozen=True, eq=False)
 class SliceImage:
-    """An image and where it lies.
+    """An image and its position.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ class LabelTable:
         return self.names.get(label, str(label))
 
     def rows(self, labels: npt.NDArray[np.int64]) -> npt.NDArray[np.uint8]:
-        """Return ``(n, 4)`` colours of labels; 0 is not to be seen, whatever a table says of it."""
+        """Return ``(n, 4)`` colours of labels; label 0 is always transparent."""
         found = distinct_colours(labels)
         for row, label in enumerate(labels.tolist()):
             if label in self.colours:

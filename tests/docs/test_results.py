@@ -144,3 +144,22 @@ def test_cpu_times_of_frames_are_those_of_the_record():
             for case in ("engine", "mapper")
         ]
         assert figures(text.split(part)[1])[:2] == [pytest.approx(one, abs=0.006) for one in slowest]
+
+
+@pytest.mark.parametrize(
+    ("title", "mode", "way", "digits"),
+    [
+        ("- Surfaces, ", "isosurface", "vtk-gpu", 0),
+        ("- Greatest values ", "mip", "vtk-gpu-equal", 1),
+        ("- Light with ", "composite", "vtk-gpu-equal", 1),
+    ],
+)
+def test_volumes_beside_vtk_have_the_ratios_of_the_record(title, mode, way, digits):
+    text = " ".join(DETAILS.read_text(encoding="utf-8").split()).split(title)[1].split(" - ")[0]
+    times = {}
+    for one in record("volume-llvmpipe")["results"]:
+        if one["mode"] == mode and "circle" in one:
+            times.setdefault(one["data"], {})[one["way"]] = one["circle"]["cpu_ms"]
+    ratios = [one[way] / one["plotter"] for one in times.values() if way in one]
+    written = iter(figures(text))
+    assert all(f"{ratio:.{digits}f}" in (f"{number:.{digits}f}" for number in written) for ratio in ratios)

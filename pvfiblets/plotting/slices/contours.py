@@ -33,7 +33,7 @@ class PaneContours:
         return name
 
     def remove(self, name: str, panes: Iterable[Pane]) -> None:
-        """Take contours away; names that are not there do no harm."""
+        """Remove contours; unknown names are ignored."""
         if self._meshes.pop(name, None) is not None:
             for pane in panes:
                 pane.set_contour(name, None)

@@ -101,11 +101,11 @@ class GlyphSet:
         return sum(one.n for one in self._shown)
 
     def show_on(self, renderer: pv.Renderer, place: Place) -> None:
-        """Show them on another plane."""
+        """Show the glyphs on another plane, too."""
         self._shown.append(_OnPlane(self, renderer, place))
 
     def remove(self) -> None:
-        """Take all away; twice is harmless."""
+        """Remove all glyphs; a second call has no effect."""
         while self._shown:
             self._shown.pop().remove()
 

@@ -152,7 +152,7 @@ class SliceLayer(SliceSettings):
         Returns
         -------
         float, int, (n,) array or None
-            None outside of the image, and of numbers that are none.
+            None outside the image, and if a number is not finite.
         """
         if self.kind == "labels":
             found = self._resampler().value(position, "nearest")

@@ -147,7 +147,7 @@ class Pane:
         self._pan -= np.array([right, up]) * self.scale
 
     def reset(self) -> None:
-        """Show all of the slice."""
+        """Show the whole slice."""
         self._scale, self._pan = None, np.zeros(2)
 
     def position_at(self, x: float, y: float) -> Array:
@@ -195,7 +195,7 @@ class Pane:
         self._version += 1
 
     def prepare(self) -> None:
-        """Bring camera, slice, cross-hair and letters up to date; the renderer is about to draw."""
+        """Update camera, slice, cross-hair and letters before the renderer draws."""
         right, up = self.axes
         toward, center, position, half = self.toward, self.center, self.stack.position, self._half
         away = self._depth
@@ -247,7 +247,7 @@ class Pane:
             self._words.SetText(place, letters(direction))
 
     def say(self, text: str) -> None:
-        """Write something into the lower left corner."""
+        """Write a text into the lower left corner."""
         self._words.SetText(_SAID, text)
 
     @property
@@ -282,7 +282,7 @@ class Pane:
         mesh.copy_from(contour.translate(self.toward * (self._depth - 0.5 * BEFORE), inplace=False))
 
     def remove(self) -> None:
-        """Take all away."""
+        """Remove the contents of the pane."""
         self._end()
         for name in tuple(self._contours):
             self.set_contour(name, None)

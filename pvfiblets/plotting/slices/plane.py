@@ -166,7 +166,7 @@ class SlicePlane:
         return self._grid
 
     def update(self) -> None:
-        """Lie where the stack's position is; colours follow with the next render."""
+        """Move to the stack's position; the next render updates the colours."""
         stack, (along, up) = self._stack, self.axes
         layers = [layer for layer in stack.layers if layer.visible]
         origin = self.origin
@@ -181,7 +181,7 @@ class SlicePlane:
         self._stale = True
 
     def refresh(self) -> None:
-        """Make the colours if they are out of date and the plane is shown."""
+        """Update the colours if they are out of date and the plane is visible."""
         if self._stale and self._grid is not None and self._visible:
             self.actor.show(self._stack.pixels(self._grid, in_3d=True), self._stack.smooth)
             self._stale = False

@@ -149,7 +149,7 @@ class Workspace:
         self._active = found
 
     def on_window(self, callback: Callable[[SliceLayer], Any]) -> None:
-        """Call something with the layer whose window a drag of the right button has changed."""
+        """Call a function with the layer whose window the right button has changed."""
         if not callable(callback):
             raise TypeError(f"callback is a {type(callback).__name__}; give a function of the layer")
         if self._events is not None:
@@ -322,7 +322,7 @@ class Workspace:
         return PointValues(self.position, self.voxel, self.slices.values(), found)
 
     def on_move(self, callback: Callable[[Array], None]) -> None:
-        """Call something with the position, ``(3,)`` mm, whenever the cross-hair moves."""
+        """Call a function with the position, ``(3,)`` mm, whenever the cross-hair moves."""
         if not callable(callback):
             raise TypeError(f"callback is a {type(callback).__name__}; give a function of the position")
         self._callbacks.append(callback)
@@ -332,7 +332,7 @@ class Workspace:
     def add_contours(
         self, mesh: pv.DataSet, color: Any = "yellow", line_width: float = 2.0, name: str | None = None
     ) -> str:
-        """Show where a mesh is cut by the slices.
+        """Show the intersection of a mesh with the slices.
 
         Parameters
         ----------
@@ -352,7 +352,7 @@ class Workspace:
         return self._contours.add(mesh, color, line_width, name, self.panes.values())
 
     def remove_contours(self, name: str) -> None:
-        """Take contours away; names that are not there do no harm."""
+        """Remove contours; unknown names are ignored."""
         self._contours.remove(name, self.panes.values())
 
     # Inside -------------------------------------------------------------------------------------
@@ -382,11 +382,11 @@ class Workspace:
         return words_of(self.position, self.voxel, self.slices.values())
 
     def say(self, text: str | None) -> None:
-        """Write into the axial pane's corner; None for position and values, as usual."""
+        """Write a text into the axial pane's corner; None shows position and values, the default."""
         self.panes["axial"].say(self._words if text is None else text)
 
     def sync(self) -> None:
-        """Show the 3-D view's streamlines in each pane's slab, and contours; a renderer is about to draw."""
+        """Show the 3-D view's streamlines in each pane's slab, and contours, before a renderer draws."""
         actors = list(self._fiblets())
         for actor in [one for one in self._tracts if one not in actors]:  # no longer in the 3-D view
             self._take_out(actor)
@@ -414,7 +414,7 @@ class Workspace:
             actor.mapper.cut_in(pane.renderer, None)
 
     def render(self) -> None:
-        """Draw all views, unless somebody else draws all that there is, as servers do."""
+        """Render all views, unless a server does."""
         interactor = None if self._plotter.iren is None else self._plotter.iren.interactor
         if interactor is None or interactor.GetEnableRender():
             self._plotter.render()
@@ -440,7 +440,7 @@ class Workspace:
         return None
 
     def stop(self) -> None:
-        """End gestures and follow renderers no more; the views stay as they are."""
+        """End gestures and updates; the views stay as they are."""
         if self._events is not None:
             self._events.stop()
             self._events = None
@@ -451,7 +451,7 @@ class Workspace:
             self._ends.pop()()
 
     def remove(self) -> None:
-        """Take panes, slices and gestures away; twice is harmless."""
+        """Remove panes, slices and gestures; a second call has no effect."""
         self._removed = True
         self.stop()
         for actor in self._tracts:
