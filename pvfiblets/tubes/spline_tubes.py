@@ -414,7 +414,7 @@ class SplineTubes:
         starts, stops = (np.bincount(ends, minlength=self.n_nodes) for ends in (start, stop))
         inner = (starts == 1) & (stops == 1)
         if not self.scaled:
-            # Branches share a node, and hence its derivatives, which no run but one of a single segment leaves alone.
+            # Branches share their node's derivatives, of which a merged segment would need larger ones.
             inner[self.segments[(starts + stops > 2)[self.segments].any(axis=1)]] = False
         after = np.full(self.n_nodes, -1)
         after[start] = np.arange(self.n_segments)
