@@ -6,6 +6,7 @@ Usage: ``python docs/benchmarks/spline_fiblets.py FILE ...``; the table is in ``
 import sys
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -30,8 +31,8 @@ def row(name, lines):
     cells = [name, f"{np.median(np.linalg.norm(np.diff(lines.points[:10_000], axis=0), axis=1)):.3g}"]
     sizes, figures = [], []
     for effort in ("fast", "small"):
-        coding, fiblets = seconds(lambda effort=effort: pf.compress(lines, exact=False, per_point="none", effort=effort))
-        decoding, decoded = seconds(lambda fiblets=fiblets: fiblets.decompress(dtype=np.float32))
+        coding, fiblets = seconds(partial(pf.compress, lines, exact=False, per_point="none", effort=effort))
+        decoding, decoded = seconds(partial(fiblets.decompress, dtype=np.float32))
         with tempfile.TemporaryDirectory() as folder:
             fiblets.save(Path(folder) / "a.fiblets", small=True)
             packed = (Path(folder) / "a.fiblets").stat().st_size
@@ -39,8 +40,9 @@ def row(name, lines):
         longer = np.abs(decoded.lengths() / np.where(lengths > 0.0, lengths, 1.0) - 1.0)[lengths > 0.0].max()
         sizes.append((fiblets.nbytes / fiblets.n_points, packed / fiblets.n_points))
         figures.append(
-            f"{error.mean_steps:.3f}, {error.max_steps:.2f}; {error.mean_degrees:.1f}°, {error.max_degrees:.1f}°; "
-            f"{100 * longer:.2g} % | {1e9 * coding / fiblets.n_points:.0f}, {1e9 * decoding / fiblets.n_points:.1f}"
+            f"{error.mean_steps:.3f}, {error.max_steps:.2f} | "
+            + ("no segment" if np.isnan(error.max_degrees) else f"{error.mean_degrees:.1f}, {error.max_degrees:.1f}")
+            + f" | {100 * longer:.2g} | {1e9 * coding / fiblets.n_points:.0f}, {1e9 * decoding / fiblets.n_points:.1f}"
         )
     (fast, fast_file), (small, small_file) = sizes
     cells += [f"{fast:.2f}, {small:.2f} ({small / fast:.2f})", f"{fast_file:.2f}, {small_file:.2f}", *figures]

@@ -16,8 +16,7 @@ from ..kernels import beam_kernels, direction_kernels, lattice_kernels, nearest,
 from ..layout import CAPS
 
 if TYPE_CHECKING:
-    from ..parameters import Parameters
-    from .encode import Effort
+    from ..parameters import Effort, Parameters
 
 Ints = npt.NDArray[np.int64]
 
@@ -67,10 +66,10 @@ class CompiledCoder:
         # which a slot's codes stand where its points stand.
         p = self._parameters
         ok, kind, shape, step, cap, radius, end_words, codes = out
-        if self._splines:
+        for tails in (False, True) if self._splines else ():
             spline_kernels.encode_splines(
                 self._points, self._origin, slots, *self._grid, p.lattice, p.budget, self._bound, p.end_scale,
-                spline_kernels.NORMAL_EQUATIONS, (ok, kind, shape, step, cap, radius, end, end_words, codes),
+                spline_kernels.NORMAL_EQUATIONS, tails, (ok, kind, shape, step, cap, radius, end, end_words, codes),
             )  # fmt: skip
         self._kernels.encode_directions(
             self._points, self._origin, slots, *self._grid, (p.step_lo, p.step_hi), p.budget, self._bound,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -15,14 +15,11 @@ from ...support.progress_bar import progress_bar
 from .. import parameters as limits
 from ..fibletset import FibletSet
 from ..layout import WORDS
-from ..parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of, survey, tell_far
+from ..parameters import CUT_SHARE, DEFAULT_ANGLE, Effort, Parameters, Survey, bounds_of, survey, tell_far
 from ..point_values import PointValues, ValueCoder, ValueSurvey, value_columns
 from .exact import plain_records, raw_bytes
 from .ordering import Order, check_order, hilbert_order
 from .record_writer import FibletChunk, RecordWriter, join
-
-if TYPE_CHECKING:
-    from .encode import Effort
 
 CHUNK_POINTS = 2_000_000
 LARGEST_FIT = 16

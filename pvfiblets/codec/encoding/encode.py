@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +21,7 @@ from ...formats.scratch import is_long
 from ...streamlines import Streamlines
 from ...support.ragged import blocks
 from ..layout import MAX_POINTS, NODE_BYTES, WIDE
-from ..parameters import DEFAULT_ANGLE
+from ..parameters import DEFAULT_ANGLE, Effort
 from ..small_sets import without_kernels
 from ..tangents import PIXELS
 from .record_writer import FibletChunk, RecordWriter
@@ -29,8 +29,6 @@ from .record_writer import FibletChunk, RecordWriter
 if TYPE_CHECKING:
     from ..arrays.array_coder import ArrayCoder
     from .compiled_coder import CompiledCoder
-
-Effort = Literal["fast", "high", "small"]
 
 LONG_PART = 2_000_000  # points of a very long streamline that are coded at a time
 
@@ -168,7 +166,9 @@ def _code(
     fiblet_at, code_at = np.cumsum(pieces) - pieces, np.cumsum(size) - size
     total, n_codes = int(pieces.sum()), int(size.sum())
     packed = np.empty(n_codes, np.uint8)
-    coder.gather(codes, slots[done, 0], size[done], code_at[done], packed)
+    source, tails = slots[:, 0].copy(), np.flatnonzero((kind == WIDE) & (size > slots[:, 1] - 3))
+    source[tails] = source[tails - 1] + size[tails - 1]
+    coder.gather(codes, source[done], size[done], code_at[done], packed)
     rows = {name: _spread(total, fiblet_at, a) for name, a in (("shape", shape), ("step", step), ("cap", cap))}
     rows["kind"] = _spread(total, fiblet_at, kind)
     rows["end_words"] = _spread(total, fiblet_at, end_words)

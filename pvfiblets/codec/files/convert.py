@@ -46,7 +46,8 @@ from .fiblets_file import CORE, OPTIONAL, index_members, make_header, write
 from .file_error import compare_file
 
 if TYPE_CHECKING:
-    from ..encoding.encode import Effort, Encoder
+    from ..encoding.encode import Encoder
+    from ..parameters import Effort
 
 SAMPLE_POINTS = 1_000_000  # compared points of a large file, about
 

@@ -1,4 +1,4 @@
-"""Compiled kernels: fiblets of cubic splines (outlook of Russig et al. 2020, section 5: segments merged within a bound).
+"""Compiled kernels: fiblets of cubic splines (outlook of Russig et al. 2020, section 5).
 
 Symbols, in units of the lattice's edge about the fiblet's anchor
     P, v         place and slope (per point) where a piece begins; the first slope is in the record
@@ -98,7 +98,8 @@ def _first_slope(true: Float64s, n: int, anchor: Float64s, h: float) -> int:
             r = (true[m, axis] - anchor[axis]) / h
             s2, s3, s4 = s2 + m * m, s3 + m * m * m, s4 + m * m * m * m
             b1, b2 = b1 + m * r, b2 + m * m * r
-        wanted[axis] = (b1 * s4 - b2 * s3) / (s2 * s4 - s3 * s3)
+        apart = s2 * s4 - s3 * s3
+        wanted[axis] = (b1 * s4 - b2 * s3) / apart if apart > 0.0 else b1
     steepest = max(abs(wanted[0]), abs(wanted[1]), abs(wanted[2]))
     finest = 0
     while finest < 3 and steepest > (_STEEPEST - 1) * 4.0**finest * 0.5**SLOPE_SHIFT:
@@ -182,16 +183,16 @@ def _put(codes: UInt8s, at: int, n: int, node: Float64s) -> None:
 
 
 @kernel
-def _pieces(true: Float64s, n: int, total: int, anchor: Float64s, h: float, limit: float, word: int, sums: Float64s,
-            turns: tuple[Float64s, Float64s, Float64s, bool], scratch: tuple[Float64s, Float64s, Float64s],
-            decoded: Float64s, codes: UInt8s) -> int:  # fmt: skip
-    """Code ``true[:n]`` into `codes`; returns the number of nodes, 0 if directions would take no more bytes."""
+def _pieces(true: Float64s, n: int, total: int, room: int, anchor: Float64s, h: float, limit: float, word: int,
+            sums: Float64s, turns: tuple[Float64s, Float64s, Float64s, bool],
+            scratch: tuple[Float64s, Float64s, Float64s], decoded: Float64s, codes: UInt8s) -> int:  # fmt: skip
+    """Code ``true[:n]`` into `codes`; returns the number of nodes, 0 if they take more bytes than `room`."""
     state, node, best = scratch
     for axis in range(3):
         state[0, axis], state[1, axis] = 0.0, slope(word, axis)
     first, last, nodes, span = 0, n - 1, 0, _FIRST
     while first < last:
-        if (nodes + 1) * NODE_BYTES >= n - 2:
+        if (nodes + 1) * NODE_BYTES > room:
             return 0
         # Spans are doubled while the bounds hold, and halved between those that hold and those that do not.
         good, bad, tried = 0, last - first + 1, min(span, last - first)
@@ -218,10 +219,13 @@ def _pieces(true: Float64s, n: int, total: int, anchor: Float64s, h: float, limi
 
 @parallel_kernel
 def encode_splines(points: Float64s, origin: Float64s, slots: Int64s, scale: Float64s, top: float, edge: float,
-                   promise: float, bound: tuple[float, float, float], end_scale: float, sums: Float64s,
+                   promise: float, bound: tuple[float, float, float], end_scale: float, sums: Float64s, tails: bool,
                    out: tuple[UInt8s, UInt8s, UInt32s, UInt16s, UInt8s, Float64s, UInt8s, UInt32s, UInt8s],
 ) -> None:  # fmt: skip
-    """Code every slot that is not yet and that splines make smaller than directions would."""
+    """Code the slots that are not yet, of streamlines that splines make smaller than directions would."""
+    # A streamline's last few points take more bytes as a spline. With `tails` they are splines as well if the slot
+    # before saves that much: a set without a fiblet of directions is drawn by programs without them. Their codes stand
+    # behind those of the slot before, where there is room.
     ok, kind, shape, step, cap, radius, end, end_words, codes = out
     h = edge * 0.5**HALVINGS
     for block in numba.prange((len(slots) + BLOCK - 1) // BLOCK):
@@ -231,7 +235,13 @@ def encode_splines(points: Float64s, origin: Float64s, slots: Int64s, scale: Flo
         anchor, following = np.empty(3), np.empty(3)
         for slot in range(block * BLOCK, min((block + 1) * BLOCK, len(slots))):
             first, n = slots[slot, 0], slots[slot, 1]
-            if ok[slot] or n < NODE_BYTES + 3:
+            at, room = first, n - 3
+            if tails:
+                if not end[slot] or slot == 0 or end[slot - 1] or kind[slot - 1] != WIDE:
+                    continue
+                before = (step[slot - 1] >> 3) * NODE_BYTES
+                at, room = slots[slot - 1, 0] + before, slots[slot - 1, 1] - 2 - before + max(n - 2, 0)
+            if ok[slot] or room < NODE_BYTES:
                 continue
             total = n if end[slot] else n + min(AHEAD, slots[slot + 1, 1])
             take_points(points, origin, first, total, true)
@@ -249,9 +259,11 @@ def encode_splines(points: Float64s, origin: Float64s, slots: Int64s, scale: Flo
                 cosines[i] = 1.0 - 0.5 * chord * chord if chord < 2.0 else _UNBOUND
             word = _first_slope(true, n, anchor, h)
             turns = (units, cosines, following, leads)
-            own = codes[first : first + n]
-            nodes = _pieces(true, n, total, anchor, h, promise * promise, word, sums, turns, scratch, decoded, own)
-            if nodes == 0 or excess(units, 0, n, decoded, following, leads) > 1.0:
+            nodes = _pieces(
+                true, n, total, room, anchor, h, promise * promise, word, sums, turns, scratch, decoded,
+                codes[at : first + n],
+            )  # fmt: skip
+            if nodes == 0 < n - 1 or excess(units, 0, n, decoded, following, leads) > 1.0:
                 continue
             ok[slot], kind[slot], shape[slot], step[slot], cap[slot] = 1, WIDE, word, SPLINE + 8 * nodes, HALVINGS
             radius[slot], end_words[slot] = capsule(decoded, 0, n, end[slot], following, end_scale)

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from pvfiblets.codec.encoding.encode import Effort
 from pvfiblets.codec.encoding.resample import resample
+from pvfiblets.codec.parameters import Effort
 from pvfiblets.codec.point_values import code_values
 from pvfiblets.report.studies.codec.coded import compress
 from pvfiblets.streamlines import Streamlines
