@@ -30,7 +30,7 @@ REPLACED = {
     "fiblets/attributes/packed_colour.glsl": "page/packed_colour.glsl",
     "fiblets/gather/line_opacity.glsl": "page/line_opacity.glsl",
 }
-ANY_FIBLETS = ("ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE")
+ANY_FIBLETS = ("ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE", "SPLINE")
 ANY_LINES = (
     "CLIPPING",
     "CLIPPING_DEPTH",

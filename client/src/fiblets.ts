@@ -26,7 +26,7 @@ interface Growing {
 
 /** Slots of a share; a set takes the number that leaves fewest of them empty. */
 const SHARES = [4, 8, 11, 15];
-const KIND_DIRECTION = 0, KIND_WIDE = 3;
+const KIND_DIRECTION = 0, KIND_WIDE = 3, SPLINE = 5; // the last is the width of codes of splines, which are of kind 3
 
 interface Parameters {
   origin: Vec;
@@ -130,9 +130,9 @@ export class FibletSet {
     const { header, arrays } = archive;
     if (header.format !== "fiblets")
       throw new FileError("The file is no .fiblets file: its header says something else.");
-    if (![2, 4].includes(header.version))
+    if (![2, 4, 5].includes(header.version))
       throw new FileError(
-        `The file is of version ${header.version}; this page reads versions 2 and 4. Make the page again with a newer pvfiblets.`,
+        `The file is of version ${header.version}; this page reads versions 2, 4 and 5. Make the page again with a newer pvfiblets.`,
       );
     const p = (this.parameters = header.parameters),
       n = (this.fiblets = header.n_fiblets);
@@ -296,7 +296,9 @@ export class FibletSet {
       ) {
         throw new FileError(`Record ${f} of the file is damaged. Copy or make it again.`);
       }
-      this.kinds.add(field("kind", record));
+      const kind = field("kind", record),
+        spline = kind === KIND_WIDE && (field("step", decoding[3 * f + 1]) & 7) === SPLINE;
+      this.kinds.add(spline ? SPLINE : kind);
       if (f % BLOCK === 0) {
         close();
         block = {
@@ -390,8 +392,9 @@ export class FibletSet {
   private decoder(): Program {
     const features = ["DIRECTION"];
     if (this.textures.anchor_low_texels) features.push("ANCHORS_LOW");
-    if (this.kinds.size > 1 || !this.kinds.has(KIND_DIRECTION)) features.push("LATTICE");
+    if ([...this.kinds].some((kind) => kind !== KIND_DIRECTION && kind !== SPLINE)) features.push("LATTICE");
     if (this.kinds.has(KIND_WIDE)) features.push("WIDE_LATTICE");
+    if (this.kinds.has(SPLINE)) features.push("SPLINE");
     return (this.decodeProgram ??= new Program(
       this.gl,
       "page/decode.vert",

@@ -84,9 +84,9 @@ def add_coding_options(parser: argparse.ArgumentParser) -> None:
         f"(default: {DEFAULT_ANGLE:g}); none: no bound, for smaller files with a coarse --max-error",
     )
     parser.add_argument(
-        "--effort", choices=("fast", "high"), default="fast", help="high: slower, with a smaller mean error at the "
-                                                                   "same size"
-    )
+        "--effort", choices=("fast", "high", "small"), default="fast", help="high: slower, with a smaller mean error "
+        "at the same size; small: splines, for fewer bytes with a larger mean error"
+    )  # fmt: skip
     parser.add_argument(
         "--per-point",
         action="append",

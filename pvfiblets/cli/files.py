@@ -34,7 +34,7 @@ def convert(
     step: float | None,
     max_error: float | None,
     max_angle: float | None,
-    effort: Literal["fast", "high"],
+    effort: Literal["fast", "high", "small"],
     per_point: list[str],
     per_point_bits: int,
     max_value_error: float | None,

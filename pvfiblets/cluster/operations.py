@@ -39,7 +39,7 @@ def convert(
     step: float | None = None,
     max_error: float | None = None,
     max_angle: float | None = DEFAULT_ANGLE,
-    effort: Literal["fast", "high"] = "fast",
+    effort: Literal["fast", "high", "small"] = "fast",
     per_point: Any = "fit",
     per_point_bits: int = 8,
     exact: bool | None = None,

@@ -16,10 +16,13 @@ from .layout import (
     END_BITS,
     LATTICE8,
     MAX_POINTS,
+    NODE_BYTES,
     PAGE,
     PLAIN_BYTES,
+    SPLINE,
     WIDE,
     WIDE_HEADER,
+    coded_kind,
     unpack,
     unpack_ends,
 )
@@ -32,10 +35,12 @@ def code_bytes(decoding: npt.NDArray[np.uint32]) -> npt.NDArray[np.int64]:
     """Bytes of codes of each fiblet, ``(n,)``, from its ``decoding`` words ``(n, 3)``."""
     kind = unpack("kind", decoding)
     last = unpack("last", decoding).astype(np.int64)
-    wide = np.where(kind == WIDE, unpack("step", decoding) & 7, 0).astype(np.int64)
+    step = unpack("step", decoding).astype(np.int64)
+    wide = np.where(kind == WIDE, step & 7, 0)
     plain = (kind == WIDE) & (wide == 0)
     width = np.select([plain, wide > 0, kind == LATTICE8], [PLAIN_BYTES, wide, 1], 2)
     size = last * width + np.where(wide > 0, WIDE_HEADER, 0)
+    size = np.where(wide == SPLINE, (step >> 3) * NODE_BYTES, size)
     return np.where(kind == DIRECTION, np.maximum(last - 1, 0), size)
 
 
@@ -71,7 +76,8 @@ def check_records(fiblets: FibletSet, path: str | PathLike[str] = "fiblets in me
             (starts != table[page, 1] + np.concatenate([[0], np.cumsum(sizes[:-1])]), "codes that do not follow on"),
             (points != expected_points, "points that do not follow on"),
             (ranks != expected_ranks, "a streamline that does not follow on"),
-            ((unpack("kind", decoding) == WIDE) & (width > 4), "codes of impossible width"),
+            ((unpack("kind", decoding) == WIDE) & (width > SPLINE), "codes of impossible width"),
+            (_spans(fiblets.codes, decoding, starts) != counts - 1, "a spline of more or fewer points"),
             (np.append(False, begins[1:] != ends[:-1]), "begin and end marks that do not alternate"),
         ):
             _refuse(path, rows.start, bad, what)
@@ -93,6 +99,20 @@ def check_records(fiblets: FibletSet, path: str | PathLike[str] = "fiblets in me
         raise FormatError(
             path, None, f"records of {point} points, {rank + 1} streamlines", f"{fiblets.n_points}, {fiblets.n_ranks}"
         )
+
+
+def _spans(
+    codes: npt.NDArray[np.uint8], decoding: npt.NDArray[np.uint32], starts: npt.NDArray[np.int64]
+) -> npt.NDArray[np.int64]:
+    """Points behind the first of each fiblet; of splines those that their nodes span."""
+    spans = unpack("last", decoding).astype(np.int64)
+    splines = np.flatnonzero(coded_kind(decoding) == SPLINE)
+    nodes, at = unpack("step", decoding)[splines].astype(np.int64) >> 3, np.asarray(starts[splines], np.int64)
+    spans[splines] = 0
+    for node in range(int(nodes.max(initial=0))):
+        some = (node < nodes) & (at + node * NODE_BYTES < len(codes))
+        spans[splines[some]] += codes[at[some] + node * NODE_BYTES] & 63
+    return spans
 
 
 def _refuse(path: str | PathLike[str], first: int, bad: npt.NDArray[np.bool_], what: str) -> None:

@@ -16,7 +16,7 @@ array          shape, dtype        read by
 ``reach``      (n,) uint16         culling: radius of the capsule about the chord (:mod:`.capsules`)
 ``ends``       (n_ranks,) uint32   culling: end vector of each streamline's last fiblet, where no next one has it
 ``decoding``   (n, 3) uint32       decoding: direction or lattice, step, where codes and points start, count, kind
-``codes``      (n_bytes,) uint8    decoding: one byte a point (kind DIRECTION), or 1-4 bytes (lattice kinds)
+``codes``      (n_bytes,) uint8    decoding: one byte a point (kind DIRECTION), 1-4 bytes (lattice kinds), or splines
 =============  ==================  ============================================================================
 
 Budget: 8 + 2 + 12 bytes of record and 58 codes for a full fiblet of 60 points (the anchor and the first direction stand
@@ -25,6 +25,9 @@ for two of them) are 80 bytes, 1.33 bytes per point; each streamline adds the 4 
 Indices in a record are relative to its *page* of ``PAGE`` consecutive fiblets. The largest stretch of codes that one
 fiblet can have is ``WIDE_HEADER + 59 * 4 = 256`` bytes, so a page holds at most 2**22 bytes of codes and 60 * 2**14 <
 2**20 points: the widths of ``code`` and ``point`` below follow from that.
+
+Fiblets of splines (`effort='small'`) are of the kind WIDE with SPLINE for the bytes of a code: cubic pieces end to end,
+NODE_BYTES each, decoded at the parameters of the points (:mod:`.kernels.spline_kernels`).
 
 Sets that keep their points exactly (:mod:`.exact`) have fiblets of at most ``PLAIN_POINTS`` points, of the kind WIDE
 with 0 for the bytes of a code: three int32 a point, ``PLAIN_BYTES``, and no box. They are drawn to a few billionths of
@@ -47,6 +50,11 @@ STEP_LEVELS = 1023
 WIDE_HEADER = 20
 PLAIN_BYTES = 12
 PLAIN_POINTS = 22
+SPLINE = 5
+NODE_BYTES = 6
+NODE_BITS = 7
+SLOPE_BITS = 10
+SLOPE_SHIFT = 3
 END_BITS = 10
 END_LEVELS = (1 << (END_BITS - 1)) - 1
 
@@ -62,7 +70,7 @@ class Kind:
     DIRECTION = DIRECTION  # constant step, one direction byte a point in a propagated frame (paper, sections 3.2, 3.3)
     LATTICE8 = LATTICE8  # one byte: step between points of an integer lattice, mixed radix
     LATTICE16 = LATTICE16  # the same in two bytes
-    WIDE = WIDE  # the same in 1-4 bytes, with its 20-byte box in the code stream; or plain, without: 12 bytes
+    WIDE = WIDE  # the same in 1-4 bytes, with a 20-byte box in the code stream; or plain, without: 12 bytes; or splines
 
 
 @dataclass(frozen=True)
@@ -100,11 +108,18 @@ FIELDS: dict[str, Field] = {
     )
 }
 """Fields by name. ``last`` is the index of the last point (count - 1); ``rank``, ``code`` and ``point`` are relative to
-the page; ``shape`` is the first direction (two snorm16) or the lattice box; ``step`` is an index between the file's
-least and greatest step, or lattice box and byte width; ``cap`` is a cap angle's index, or the lattice's halvings."""
+the page; ``shape`` is the first direction (two snorm16), the lattice box, or a spline's first slope; ``step`` is an
+index between the file's least and greatest step, or lattice box and byte width, or SPLINE + 8 * number of nodes;
+``cap`` is a cap angle's index, or the lattice's halvings."""
 
 WORDS = {name: 1 + max(f.word for f in FIELDS.values() if f.array == name) for name in ("anchors", "decoding")}
 """Words (uint32) of a fiblet in ``anchors`` and in ``decoding``: columns of these arrays."""
+
+
+def coded_kind(decoding: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Return the kinds of records, with SPLINE for fiblets of splines."""
+    kind = unpack("kind", decoding)
+    return np.where((kind == WIDE) & (unpack("step", decoding) & 7 == SPLINE), np.uint32(SPLINE), kind)
 
 
 def unpack(name: str, words: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
@@ -154,6 +169,11 @@ def glsl_source() -> str:
         f"const float FIBLET_STEP_LEVELS = {float(STEP_LEVELS)};",
         f"const uint FIBLET_WIDE_HEADER = {WIDE_HEADER}u;",
         f"const uint FIBLET_PLAIN_BYTES = {PLAIN_BYTES}u;",
+        f"const uint FIBLET_NODE_BYTES = {NODE_BYTES}u;",
+        f"const int FIBLET_NODE_BITS = {NODE_BITS};",
+        f"const int FIBLET_SLOPE_BITS = {SLOPE_BITS};",
+        f"const int FIBLET_SLOPE_SHIFT = {SLOPE_SHIFT};",
+        f"const uint KIND_SPLINE = {SPLINE}u;",
     ]
     lines += [f"const uint FIBLET_{name.upper()}_WORDS = {words}u;" for name, words in WORDS.items()]
     lines += [f"const uint KIND_{name} = {value}u;" for name, value in vars(Kind).items() if name.isupper()]

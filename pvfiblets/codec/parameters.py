@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
+from typing import Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -40,6 +41,7 @@ BUDGET = 0.98  # decoded points may be rounded to float32 wherever that moves th
 _ANCHOR_SHARE = 0.5  # of the promise that 16-bit anchors may use before finer ones are taken
 
 Vector = npt.NDArray[np.float64]
+Effort: TypeAlias = Literal["fast", "high", "small"]
 
 
 @dataclass

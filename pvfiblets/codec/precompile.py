@@ -25,7 +25,7 @@ def _coders() -> tuple[Any, Any, Any]:
     lines = _lines()
     parameters = Parameters.choose(survey([lines]))
     arguments = np.asarray(lines.points, np.float64), np.asarray(lines.offsets), parameters, (0.01, 0.17, 0.17)
-    return ArrayCoder(*arguments), CompiledCoder(*arguments), lines
+    return ArrayCoder(*arguments), CompiledCoder(*arguments, "small"), lines
 
 
 def _directions() -> None:
@@ -36,9 +36,11 @@ def _directions() -> None:
     slots, _ = coder.cut()
     m = len(slots)
     codes, end = np.zeros(lines.n_points, np.uint8), np.ones(m, np.uint8)
-    ok, cap, words, shape = np.zeros(m, np.uint8), np.zeros(m, np.uint8), np.zeros(m, np.uint32), np.zeros(m, np.uint32)
-    coder.code_directions(slots, end, (ok, shape, np.zeros(m, np.uint16), cap, np.zeros(m), words, codes))
-    coder.gather(codes, slots, np.flatnonzero(ok), np.cumsum(slots[:, 1]) - slots[:, 1], np.zeros_like(codes))
+    ok, kind, cap = np.zeros(m, np.uint8), np.zeros(m, np.uint8), np.zeros(m, np.uint8)
+    words, shape = np.zeros(m, np.uint32), np.zeros(m, np.uint32)
+    coder.code_directions(slots, end, (ok, kind, shape, np.zeros(m, np.uint16), cap, np.zeros(m), words, codes))
+    first, count = slots.T.copy()
+    coder.gather(codes, first, count, first, np.zeros_like(codes))
 
 
 def _lattices() -> None:

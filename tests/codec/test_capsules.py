@@ -54,7 +54,7 @@ def assert_capsules_are_right(fiblets):
 
 
 @pytest.mark.few(11)
-@pytest.mark.parametrize("effort", ["fast", "high"])
+@pytest.mark.parametrize("effort", ["fast", "high", "small"])
 @pytest.mark.parametrize("name", extremes())
 def test_capsules_hold_extreme_lines(name, effort):
     assert_capsules_are_right(pf.compress(extremes()[name], effort=effort))

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 import pvfiblets as pf
 from pvfiblets.codec.encoding.compress import split_chunks
-from pvfiblets.codec.layout import DIRECTION, MAX_POINTS, unpack
-from pvfiblets.report.studies.decode.reference import decode_direction, decode_lattice
+from pvfiblets.codec.layout import DIRECTION, MAX_POINTS, SPLINE, WIDE, coded_kind, unpack
+from pvfiblets.report.studies.decode.reference import decode_direction, decode_lattice, decode_spline
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.synthetic.trackers import tracked_streamlines
 
 from . import reference
 from .samples import extremes, noisy, smooth, wandering
@@ -127,6 +128,8 @@ def decode_by_reference(fiblets):
         if kind == DIRECTION:
             length = p.step_lo + step * (p.step_hi - p.step_lo) / 1023 if p.step_hi > p.step_lo else p.step_lo
             out[first : first + n] = decode_direction(anchor, shape, length, cap, codes, n)
+        elif kind == WIDE and step & 7 == SPLINE:
+            out[first : first + n] = decode_spline(anchor, shape, step >> 3, p.lattice * 0.5**cap, codes, n)
         else:
             out[first : first + n] = decode_lattice(anchor, kind, shape, step, p.lattice * 0.5**cap, codes, n)
     return out + fiblets.origin
@@ -140,8 +143,40 @@ def test_kernels_decode_what_the_reference_decodes(name):
     np.testing.assert_array_equal(fiblets.decompress(dtype=np.float32).points, expected.astype(np.float32))
 
 
+@pytest.mark.parametrize("name", ["iFOD1", "iFOD2", "SD_STREAM", "EuDX"])
+def test_splines_take_fewer_bytes_at_the_same_bounds(name):
+    lines = tracked_streamlines(name, 30, 0.1)
+    fast, small = (pf.compress(lines, exact=False, effort=e) for e in ("fast", "small"))
+    small.verify()
+    assert small.promise == fast.promise
+    assert small.nbytes < 0.8 * fast.nbytes
+    assert (coded_kind(small.decoding) == SPLINE).mean() > 0.9
+    error = pf.measure_error(lines, small)
+    assert error.max_mm <= small.promise
+    np.testing.assert_allclose(small.decompress().lengths(), lines.lengths(), rtol=0.01)
+    np.testing.assert_allclose(small.decompress(dtype=np.float64).points, decode_by_reference(small), atol=1e-9)
+
+
+@pytest.mark.parametrize("name", extremes())
+def test_splines_never_take_more_bytes(name):
+    fast, small = (pf.compress(extremes()[name], exact=False, effort=e) for e in ("fast", "small"))
+    assert small.nbytes <= fast.nbytes
+
+
+def test_a_circle_takes_few_pieces():
+    """A radian of 600 points: a cubic over 30 of them errs by far less than a tenth of a step."""
+    angle = np.arange(600) / 600
+    circle = 60.0 * np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
+    fiblets = pf.compress(Streamlines.from_list([circle]), exact=False, effort="small")
+    nodes = unpack("step", fiblets.decoding) >> 3
+    assert (coded_kind(fiblets.decoding) == SPLINE).all()
+    assert nodes.max() <= 3
+    distance = np.linalg.norm(fiblets.decompress().points, axis=1) - 60.0
+    assert abs(distance).max() <= fiblets.promise
+
+
 @pytest.mark.few(7)
-@pytest.mark.parametrize("effort", ["fast", "high"])
+@pytest.mark.parametrize("effort", ["fast", "high", "small"])
 @pytest.mark.parametrize("name", extremes())
 def test_extreme_lines_keep_the_promise(name, effort):
     streamlines = extremes()[name]
@@ -171,7 +206,8 @@ def test_any_lines_keep_any_promise(data):
     points += scale * data.draw(st.sampled_from([0.0, 1e3, -1e5]))
     streamlines = Streamlines(points, np.concatenate([[0], np.cumsum(counts)]))
     promise = data.draw(st.one_of(st.none(), st.floats(1e-3, 10).map(lambda v: v * scale)))
-    fiblets = pf.compress(streamlines, max_error=promise)
+    effort = data.draw(st.sampled_from(["fast", "small"]))
+    fiblets = pf.compress(streamlines, max_error=promise, effort=effort)
     if promise is not None:
         assert fiblets.promise == promise
     fiblets.verify()

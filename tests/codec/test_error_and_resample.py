@@ -97,7 +97,7 @@ def test_compress_resamples_only_when_asked():
         ({"max_angle": 0.0}, r"max_angle is 0.0; degrees above 0 and up to 90"),
         ({"max_angle": 120.0}, r"max_angle is 120.0; .* or None for any"),
         ({"max_angle": float("nan")}, r"max_angle is nan"),
-        ({"effort": "slow"}, r"effort is 'slow'; 'fast' or 'high'"),
+        ({"effort": "slow"}, r"effort is 'slow'; 'fast', 'high' or 'small'"),
         ({"per_point": ["fa"]}, r"no per-point array 'fa'; the streamlines have: none"),
         ({"per_point": "fa"}, r"a list of names is needed: \['fa'\]"),
         ({"per_point_bits": 12}, r"per_point_bits is 12; 8 or 16"),

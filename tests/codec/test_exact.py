@@ -204,8 +204,8 @@ def test_older_programs_are_told_and_older_files_are_read(tmp_path):
     pf.compress(smooth(3), exact=True).save(tmp_path / "exact.fiblets")
     assert header_of(tmp_path / "coded.fiblets")["version"] == 2
     assert header_of(tmp_path / "exact.fiblets")["version"] == 3
-    with_header(tmp_path / "exact.fiblets", version=5)  # what version 3 is to a program of version 2
-    with pytest.raises(FormatError, match="version 5 in header.json, expected at most 4: update pvfiblets"):
+    with_header(tmp_path / "exact.fiblets", version=6)  # what version 3 is to a program of version 2
+    with pytest.raises(FormatError, match="version 6 in header.json, expected at most 5: update pvfiblets"):
         pf.FibletSet.open(tmp_path / "exact.fiblets")
 
 

@@ -32,8 +32,9 @@ def with_groups():
 @pytest.mark.few(1)
 @pytest.mark.parametrize("order", ["input", "hilbert"])
 @pytest.mark.parametrize("mapped", [False, True])
-def test_parts_of_every_kind(order, mapped, tmp_path):
-    whole = pf.compress(with_groups(), per_point=["height", "fine"], per_point_bits=16, order=order)
+@pytest.mark.parametrize("effort", ["fast", "small"])
+def test_parts_of_every_kind(order, mapped, effort, tmp_path):
+    whole = pf.compress(with_groups(), per_point=["height", "fine"], per_point_bits=16, order=order, effort=effort)
     if mapped:
         whole.save(tmp_path / "a.fiblets")
         whole = pf.FibletSet.open(tmp_path / "a.fiblets")

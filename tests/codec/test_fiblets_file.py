@@ -248,13 +248,15 @@ def test_chunks_keep_empty_streamlines(offsets):
 # ------------------------------------------------------------------------------------------------------ conversion
 
 
-def test_conversion_writes_what_compressing_gives(tmp_path, monkeypatch):
+@pytest.mark.parametrize("effort", ["fast", "small"])
+def test_conversion_writes_what_compressing_gives(effort, tmp_path, monkeypatch):
     pf.write(tmp_path / "a.trx", rich("cluster"))
     monkeypatch.setattr("pvfiblets.codec.files.convert.CHUNK_POINTS", 100)
-    report = pf.compress_file(tmp_path / "a.trx", tmp_path / "a.fiblets", per_point=["fa"])
+    report = pf.compress_file(tmp_path / "a.trx", tmp_path / "a.fiblets", per_point=["fa"], effort=effort)
     fiblets_format.verify_file(tmp_path / "a.fiblets")
     source = pf.read(tmp_path / "a.trx")
-    assert_equal_sets(pf.compress(source, per_point=["fa"]), pf.FibletSet.open(tmp_path / "a.fiblets"))
+    again = pf.FibletSet.open(tmp_path / "a.fiblets")
+    assert_equal_sets(pf.compress(source, per_point=["fa"], effort=effort), again)
     error = pf.measure_error(source, pf.FibletSet.open(tmp_path / "a.fiblets"))
     assert report["error_mm"]["max"] == pytest.approx(error.max_mm)
     assert report["streamlines"] == 21
@@ -322,7 +324,7 @@ def test_an_older_version_is_refused(tmp_path):
     del header["parameters"]["end_scale"], header["parameters"]["largest_radius"]
     members = {k: archive.array_member(np.array(v)) for k, v in arrays.items() if k != "ends.npy"}
     archive.write_archive(tmp_path / "b.fiblets", header, members)
-    with pytest.raises(FormatError, match="by an older pvfiblets, expected versions 2 to 4: compress the original"):
+    with pytest.raises(FormatError, match="by an older pvfiblets, expected versions 2 to 5: compress the original"):
         pf.FibletSet.open(tmp_path / "b.fiblets")
 
 

@@ -4,6 +4,7 @@ import json
 import math
 import zipfile
 import zlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,6 +17,8 @@ from pvfiblets.codec.files import packed
 from pvfiblets.codec.files.fiblets_format import verify_file
 from pvfiblets.codec.files.packed import pack, unpack
 from pvfiblets.codec.kernels.entropy_kernels import ALONE, BLOCK, LONGEST, code_lengths
+from pvfiblets.codec.layout import SPLINE, coded_kind
+from pvfiblets.codec.layout import unpack as unpack_field
 from pvfiblets.errors import FormatError
 from pvfiblets.query.painting.fiblet_index import FibletIndex
 from pvfiblets.regions import index_of
@@ -239,12 +242,33 @@ def test_newer_versions_ask_for_an_update(fiblets, tmp_path):
         members = {name: archive.read(name) for name in archive.namelist()}
     assert data
     assert json.loads(header)["version"] == 4
-    members["header.json"] = json.dumps(json.loads(header) | {"version": 5}).encode()
+    members["header.json"] = json.dumps(json.loads(header) | {"version": 6}).encode()
     with zipfile.ZipFile(tmp_path / "b.fiblets", "w") as archive:
         for name, content in members.items():
             archive.writestr(name, content)
-    with pytest.raises(FormatError, match="at most 4: update pvfiblets"):
+    with pytest.raises(FormatError, match="at most 5: update pvfiblets"):
         pf.FibletSet.open(tmp_path / "b.fiblets")
+
+
+def test_splines_are_of_a_version_of_their_own_packed_or_not(tmp_path):
+    whole = pf.compress(brain_streamlines(60, seed=1), exact=False, effort="small")
+    for small in (False, True):
+        whole.save(tmp_path / "a.fiblets", small=small)
+        with zipfile.ZipFile(tmp_path / "a.fiblets") as archive:
+            header = json.loads(archive.read("header.json"))
+        assert header["version"] == 5
+        assert ("packed" in header) == small
+        verify_file(tmp_path / "a.fiblets")
+        assert_equal(pf.FibletSet.open(tmp_path / "a.fiblets"), whole)
+
+
+def test_a_spline_that_spans_other_points_is_damage():
+    whole = pf.compress(brain_streamlines(20, seed=1), exact=False, effort="small")
+    spline = int(np.flatnonzero(coded_kind(whole.decoding) == SPLINE)[3])
+    codes = whole.codes.copy()
+    codes[int(unpack_field("code", whole.decoding)[spline])] ^= 3  # of its first node's span
+    with pytest.raises(FormatError, match=f"fiblet {spline} with a spline of more or fewer points"):
+        replace(whole, codes=codes).verify()
 
 
 def test_the_command_packs_originals_and_compressed_files(fiblets, tmp_path, capsys):

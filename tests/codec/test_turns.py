@@ -39,7 +39,7 @@ def test_every_real_file_keeps_its_directions(shared_data, name):
 
 
 @pytest.mark.few(4)
-@pytest.mark.parametrize("effort", ["fast", "high"])
+@pytest.mark.parametrize("effort", ["fast", "high", "small"])
 @pytest.mark.parametrize(("make", "kept"), [(smooth, 1.0), (noisy, 1.3), (wandering, 15.0)])
 def test_any_angle_is_kept_and_none_leaves_directions_alone(make, kept, effort):
     lines = make()

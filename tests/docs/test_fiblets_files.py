@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.codec.encoding.compress import compress
-from pvfiblets.codec.layout import unpack
+from pvfiblets.codec.layout import SPLINE, coded_kind
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
 
@@ -35,6 +35,7 @@ def jumpy(scale: float, seed: int = 0) -> Streamlines:
 SETS = {
     "tracts": lambda: (brain_streamlines(12, seed=3), {}),
     "fine": lambda: (brain_streamlines(4, seed=4), {"max_error": 1e-5}),
+    "splines": lambda: (brain_streamlines(12, seed=3), {"effort": "small"}),
     "jumpy": lambda: (jumpy(1.0), {}),
     "jumpy and fine": lambda: (jumpy(0.01), {"max_error": 1e-4}),
     "jumpy and coarse": lambda: (jumpy(1.0), {"max_error": 1.0}),
@@ -101,5 +102,5 @@ def test_all_kinds_of_records_are_read():
     kinds = set()
     for make in SETS.values():
         original, options = make()
-        kinds |= set(unpack("kind", compress(original, **options).decoding).tolist())
-    assert kinds == {0, 1, 2, 3}
+        kinds |= set(coded_kind(compress(original, **options).decoding).tolist())
+    assert kinds == {0, 1, 2, 3, SPLINE}

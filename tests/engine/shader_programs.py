@@ -232,7 +232,7 @@ def _begun(empty, fixed, names):
 
 def _decoding(choice, names):
     """Add a kind of record, if fiblets are decoded: there is no set without."""
-    kinds = [name for name in ("DIRECTION", "LATTICE") if name not in choice.off]
+    kinds = [name for name in ("DIRECTION", "LATTICE", "SPLINE") if name not in choice.off]
     if "DIRECTION" not in names or choice.on.intersection(kinds):
         return choice
     return choice.having([choice.draw.choice(kinds)]) if kinds else None

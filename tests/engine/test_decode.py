@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from pvfiblets.codec import layout
+from pvfiblets.codec.encoding.compress import compress
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.data.chunks import storage_buffer
 from pvfiblets.engine.frame import FRAME_BLOCK
 from pvfiblets.engine.gl.shaders import assemble
 from pvfiblets.report.studies.decode import reference
+from pvfiblets.synthetic.trackers import tracked_streamlines
 
 SEQUENTIAL = """
 #version 430
@@ -79,6 +81,9 @@ def decoded_by_reference(fiblets, f):
         step = fiblets.step_lo + unpack["step"] * (fiblets.step_hi - fiblets.step_lo) / layout.STEP_LEVELS
         return reference.decode_direction(anchor, unpack["shape"], step, unpack["cap"], codes, count), step
     edge = fiblets.lattice * 0.5 ** unpack["cap"]
+    if kind == layout.WIDE and unpack["step"] & 7 == layout.SPLINE:
+        points = reference.decode_spline(anchor, unpack["shape"], unpack["step"] >> 3, edge, codes, count)
+        return points, np.linalg.norm(np.diff(points, axis=0), axis=1).mean()
     points = reference.decode_lattice(anchor, kind, unpack["shape"], unpack["step"], edge, codes, count)
     return points, np.linalg.norm(np.diff(points, axis=0), axis=1).mean() if count > 1 else 1.0
 
@@ -134,6 +139,17 @@ def assert_points_agree(fiblets, points):
 @pytest.mark.parametrize(("source", "threads"), [(SEQUENTIAL, 64), (PARALLEL, 1)], ids=["sequential", "parallel"])
 def test_direction_codes_decode_like_the_reference(gl, source, threads):
     fiblets = random_directions(800, np.random.default_rng(1))
+    assert_points_agree(fiblets, decoded_by_shader(gl, fiblets, source, threads))
+
+
+@pytest.mark.few(2)
+@pytest.mark.parametrize("algorithm", ["iFOD1", "SD_STREAM"])
+@pytest.mark.parametrize(("source", "threads"), [(SEQUENTIAL, 64), (PARALLEL, 1)], ids=["sequential", "parallel"])
+def test_splines_decode_like_the_reference(gl, algorithm, source, threads):
+    lines = tracked_streamlines(algorithm, 12, 0.1)
+    fiblets = compress(lines, exact=False, effort="small")
+    kinds = layout.coded_kind(fiblets.decoding)
+    assert (kinds == layout.SPLINE).all() == (algorithm == "SD_STREAM")
     assert_points_agree(fiblets, decoded_by_shader(gl, fiblets, source, threads))
 
 

@@ -62,7 +62,7 @@ def test_the_compiler_sees_every_stage(tmp_path):
 def test_outputs_are_within_what_opengl_promises(tmp_path, kind, drawn):
     """256 vertices, 512 primitives, 16 KiB of outputs and shared memory; as many as the shares need."""
     summed = ["GATHER", "GATHER_SLICES", "PAINTED", "VALUES_ARC_LENGTH"]
-    features = ["DIRECTION", "LATTICE", "WIDE_LATTICE", *summed, *DRAWN[drawn]]
+    features = ["DIRECTION", "LATTICE", "WIDE_LATTICE", "SPLINE", *summed, *DRAWN[drawn]]
     source = tmp_path / "stage.mesh"
     source.write_text(assemble(f"fiblets/mesh/{kind}.mesh", features, CONSTANTS))
     text = subprocess.run([glslang(), "-E", source], capture_output=True, text=True, check=True).stdout
@@ -147,9 +147,9 @@ def test_pictures_of_lattices(gl, monkeypatch, fabricate, lines, camera, kind, w
     assert_alike(together, expected)
 
 
-@pytest.fixture(scope="module")
-def brain():
-    return compress(synthetic.brain_streamlines(300, 0.5, seed=5, fa=True), per_point=("fa",))
+@pytest.fixture(scope="module", params=["fast", "small"])
+def brain(request):
+    return compress(synthetic.brain_streamlines(300, 0.5, seed=5, fa=True), per_point=("fa",), effort=request.param)
 
 
 @pytest.mark.few(1)

@@ -51,7 +51,8 @@ def test_stages_link_in_the_oldest_glsl(gl, name, values, culling, clipping):
     """With every kind of record, in the version of GLSL that the pipeline's OpenGL has."""
     version = 410 if "tessellation" in name else 330
     older = SimpleNamespace(version_code=version, program=gl.program, info=gl.info)
-    every = ["ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE", "RANK_TO_ID", "LEVEL_OF_DETAIL", "TEXTURE_DATA"]
+    every = ["ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE", "SPLINE", "RANK_TO_ID", "LEVEL_OF_DETAIL"]
+    every.append("TEXTURE_DATA")
     wide = ["WIDE_LINES"] if "wide" in name else []
     stages = ("vertex", "tess_control", "tess_evaluation", "geometry", "fragment")
     chosen = {stage: file for stage, file in zip(stages, STAGES[name], strict=True) if file}

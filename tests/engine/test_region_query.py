@@ -5,7 +5,7 @@ import pytest
 
 import pvfiblets
 from pvfiblets import regions
-from pvfiblets.codec.layout import DIRECTION, LATTICE8, LATTICE16, WIDE, unpack
+from pvfiblets.codec.layout import DIRECTION, LATTICE8, LATTICE16, SPLINE, WIDE, coded_kind
 from pvfiblets.engine import EngineError, FibletRenderer, View
 from pvfiblets.engine.fiblets.region_query import ALL, ANY, FIRST, LAST, nearest_anchor
 from pvfiblets.query.selection.passing import region_flags
@@ -81,6 +81,7 @@ SETS = {
     "hilbert": lambda: packed(steady(120), order="hilbert"),
     "turned sharply": lambda: packed(steady(100, turn=1.0)),
     "both kinds": lambda: packed(steady(60) + wandering(60)),
+    "splines": lambda: packed(steady(100, step=0.1, turn=0.01) + wandering(30), effort="small"),
 }
 
 
@@ -90,6 +91,7 @@ KINDS = {
     "fine lattice": {WIDE},
     "turned sharply": {DIRECTION, LATTICE8},
     "both kinds": {DIRECTION, LATTICE16, WIDE},
+    "splines": {DIRECTION, SPLINE},
 }
 
 
@@ -98,7 +100,7 @@ KINDS = {
 def test_every_kind_of_fiblet(gl, kind):
     fiblets = SETS[kind]()
     assert (fiblets.anchors_low is not None) == (kind in ("32-bit anchors", "fine lattice"))
-    assert set(np.unique(unpack("kind", fiblets.decoding))) >= KINDS.get(kind, {DIRECTION})
+    assert set(np.unique(coded_kind(fiblets.decoding))) >= KINDS.get(kind, {DIRECTION})
     renderer = FibletRenderer(gl, fiblets)
     for name, region in made((3.0, -2.0, 4.0), 50.0).items():
         assert (renderer.query(region, "points") == by_numpy(fiblets, region)).all(), name

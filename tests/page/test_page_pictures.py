@@ -6,6 +6,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPlane
 
 import pvfiblets
+from pvfiblets.codec.layout import SPLINE, coded_kind
 from pvfiblets.page import writing
 from pvfiblets.page.scene import PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
@@ -67,6 +68,20 @@ def test_page_shows_what_the_engine_shows(case, plotter, fiblets, visit, tmp_pat
     plotter.fiblets.export_page(tmp_path / "figure.html")
     wrong, drawn = differing(visit(tmp_path / "figure.html").picture(), expected)
     assert drawn > 0.2
+    assert wrong < 0.01
+
+
+def test_splines_are_drawn_as_the_engine_draws_them(plotter, visit, tmp_path):
+    streamlines = brain_streamlines(150, step=0.2, seed=3)
+    small = pvfiblets.compress(streamlines, exact=False, effort="small")
+    assert (coded_kind(small.decoding) == SPLINE).mean() > 0.9
+    plotter.add_fiblets(small, line_width=2.0)
+    plotter.picture.antialias = "coverage"
+    plotter.camera_position = "xz"
+    expected = plotter.screenshot(return_img=True)
+    shown = visit(plotter.fiblets.export_page(tmp_path / "figure.html")[0]).picture()
+    wrong, drawn = differing(shown, expected)
+    assert drawn > 0.1
     assert wrong < 0.01
 
 

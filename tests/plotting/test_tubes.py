@@ -450,3 +450,21 @@ def test_the_radius_is_that_of_the_tubes_and_not_of_what_they_were_made_of(plott
     actor.tubes = replace(actor.tubes, radius=1.5 * actor.tubes.radius)
     actor.scalars = "radius"
     assert actor.clim == (1.5, 4.5)
+
+
+@pytest.mark.parametrize("method", ["finite", "catmull-rom"])
+def test_simplified_tubes_look_the_same(plotter, front, method):
+    t = np.linspace(0.0, 4 * np.pi, 1500)
+    spring = np.stack([14 * np.cos(t), 14 * np.sin(t), 2 * t - 12], axis=1)
+    branch = np.stack([14 - 0.02 * t**3, 0 * t, 1.2 * t - 12], axis=1)
+    whole = as_spline_tubes([spring, branch], radius=np.tile(1.5 + 0.5 * np.sin(t), 2),
+                            scalars=np.tile(np.cos(t), 2), method=method)  # fmt: skip
+    small = whole.simplify(0.02)
+    assert small.n_segments < 0.05 * whole.n_segments
+    actor = plotter.add_spline_tubes(whole, scalars="scalars", clim=(-1, 1), show_scalar_bar=False)
+    before = front()
+    actor.tubes = small
+    after = front()
+    assert covered(before) > 4000
+    # The surfaces are within 0.04 mm of each other, a fifth of a pixel: few pixels of an edge are another's.
+    assert (np.abs(after - before).max(axis=2) > 8).mean() < 1e-3

@@ -22,7 +22,6 @@ def small(monkeypatch):
     monkeypatch.setattr(culling, "QUICK_SEGMENTS", 20_000)
     monkeypatch.setattr(culling, "QUICK_SIZE", (96, 64))
     monkeypatch.setattr(culling, "STEP", 0.5)
-    monkeypatch.delenv("PVFIBLETS_DATA", raising=False)
 
 
 @pytest.mark.exhaustive

@@ -31,7 +31,6 @@ def small(monkeypatch):
     monkeypatch.setattr(halos, "QUICK_SIZE", (120, 90))
     monkeypatch.setattr(halos, "QUICK_EXACT_SIZE", (60, 40))
     monkeypatch.setattr(halos, "QUICK_HELICES", 2)
-    monkeypatch.delenv("PVFIBLETS_DATA", raising=False)
 
 
 @pytest.mark.more

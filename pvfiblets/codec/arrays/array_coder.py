@@ -42,16 +42,16 @@ class ArrayCoder:
     def code_directions(self, slots: Ints, end: npt.NDArray[np.uint8], out: tuple[npt.NDArray[Any], ...]) -> None:
         """Try to code every slot with direction bytes."""
         s, p = self._source, self._parameters
+        ok, _, *rest = out
         direction_arrays.encode_directions(
             s.points, s.origin, slots, end, s.scale, s.top, (p.step_lo, p.step_hi), p.budget, s.turning, p.end_scale,
-            out,
+            (ok, *rest),
         )  # fmt: skip
 
-    def gather(self, codes: npt.NDArray[np.uint8], slots: Ints, which: Ints, at: Ints, out: Any) -> None:
-        """Lay the codes of slots ``which`` end to end, each from byte ``at`` of its slot on."""
-        counts = np.maximum(slots[which, 1] - 2, 0)
-        place = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
-        out[place + np.repeat(at[which], counts)] = codes[place + np.repeat(slots[which, 0], counts)]
+    def gather(self, codes: npt.NDArray[np.uint8], first: Ints, size: Ints, at: Ints, out: Any) -> None:
+        """Copy runs of codes: so many bytes from ``first`` on, to ``at``."""
+        place = np.arange(int(size.sum())) - np.repeat(np.cumsum(size) - size, size)
+        out[place + np.repeat(at, size)] = codes[place + np.repeat(first, size)]
 
     def plan_lattices(self, slots: Ints, end: npt.NDArray[np.uint8], wanted: Ints) -> tuple[Ints, Ints]:
         """Plan how slots ``wanted`` are split: number of pieces, and bytes of their codes."""

@@ -7,7 +7,20 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..layout import DIRECTION, PAGE_BITS, PLAIN_BYTES, STEP_LEVELS, WIDE, WIDE_HEADER, unpack
+from ..layout import (
+    DIRECTION,
+    NODE_BITS,
+    NODE_BYTES,
+    PAGE_BITS,
+    PLAIN_BYTES,
+    SLOPE_BITS,
+    SLOPE_SHIFT,
+    SPLINE,
+    STEP_LEVELS,
+    WIDE,
+    WIDE_HEADER,
+    unpack,
+)
 from .frame_arrays import first_frames, turn, turned_x
 
 BATCH = 2048  # fiblets at once
@@ -60,10 +73,10 @@ def _decode_batch(
         for name, more in (("last", 1), ("step", 0), ("cap", 0), ("kind", 0), ("shape", 0))
     )
     at = code_base[which >> PAGE_BITS] + unpack("code", records).astype(np.int64)
-    plain = (kind == WIDE) & (step & 7 == 0)
+    plain, spline = ((kind == WIDE) & (step & 7 == width) for width in (0, SPLINE))
     size = np.select(
-        [kind == DIRECTION, plain, kind == WIDE],
-        [n - 2, (n - 1) * PLAIN_BYTES, WIDE_HEADER + (n - 1) * (step & 7)],
+        [kind == DIRECTION, plain, spline, kind == WIDE],
+        [n - 2, (n - 1) * PLAIN_BYTES, (step >> 3) * NODE_BYTES, WIDE_HEADER + (n - 1) * (step & 7)],
         (n - 1) * kind,
     )
     # A record read from a damaged file must not reach beyond the arrays.
@@ -80,7 +93,12 @@ def _decode_batch(
     if whole.size:
         edges = steps[2] * np.ldexp(1.0, -cap[whole])
         _decode_plain(anchor[:, whole], edges, codes, at[whole], n[whole], origin, to[whole], out)
-    others = np.flatnonzero(~bad & ~plain & (kind != DIRECTION) & (n > 1))
+    curved = np.flatnonzero(~bad & spline & (n > 1))
+    if curved.size:
+        c = curved
+        edges = steps[2] * np.ldexp(1.0, -cap[c])
+        _decode_splines(anchor[:, c], shape[c], edges, codes, at[c], step[c] >> 3, n[c], origin, to[c], out)
+    others = np.flatnonzero(~bad & ~plain & ~spline & (kind != DIRECTION) & (n > 1))
     if others.size:
         o = others
         edges = steps[2] * np.ldexp(1.0, -cap[o])
@@ -114,6 +132,33 @@ def _decode_plain(
     four = np.full(len(owner), 4)
     moves = np.stack([_signed(_take(codes, start + 4 * axis, four), 32) for axis in range(3)])
     out[to[owner] + 1 + place] = (anchor[:, owner] + edge[owner] * _summed(moves, owner, begin)).T + origin
+
+
+def _decode_splines(
+    anchor: Array, shape: Ints, edge: Array, codes: Any, at: Ints, nodes: Ints, n: Ints, origin: Array, to: Ints,
+    out: Any,
+) -> None:  # fmt: skip
+    """Fiblets of cubic splines, in the symbols of `spline_kernels`."""
+    place = np.zeros_like(anchor)
+    slope = np.stack([_signed(shape >> SLOPE_BITS * axis & (1 << SLOPE_BITS) - 1, SLOPE_BITS) for axis in range(3)])
+    slope = slope * (4.0 ** (shape >> 3 * SLOPE_BITS) * 0.5**SLOPE_SHIFT)
+    done = np.ones(len(n), np.int64)
+    for k in range(int(nodes.max())):
+        some = np.flatnonzero(k < nodes)
+        word = _take(codes, at[some] + k * NODE_BYTES, np.full(len(some), NODE_BYTES))
+        node = [_signed(word >> 6 + NODE_BITS * j & (1 << NODE_BITS) - 1, NODE_BITS) for j in range(6)]
+        d, e, span = np.array(node[:3], float), np.array(node[3:], float), word & 63
+        owner, _, m = _runs(np.minimum(span, n[some] - done[some]))
+        own, m = some[owner], m + 1
+        x = m / span[owner]
+        local = place[:, own] + m * slope[:, own] + x * x * ((d - 2.0 * e)[:, owner] + (2.0 * e)[:, owner] * x)
+        out[to[own] + done[own] + m - 1] = (anchor[:, own] + edge[own] * local).T + origin
+        done[some] += np.minimum(span, n[some] - done[some])
+        span = np.maximum(span, 1)
+        place[:, some] += span * slope[:, some] + d
+        slope[:, some] += 2.0 * (d + e) / span
+    owner, _, m = _runs(n - done)  # of damaged files
+    out[to[owner] + done[owner] + m] = out[to[owner] + done[owner] - 1]
 
 
 def _runs(sizes: Ints) -> tuple[Ints, Ints, Ints]:

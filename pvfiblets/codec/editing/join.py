@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...streamlines import Streamlines
+from ..layout import SPLINE, coded_kind
 from ..point_values import PointValues, code_values
 from .restrict import Records, parts_of
 
@@ -148,5 +149,9 @@ def _coded_again(sets: list[FibletSet], promise: float) -> FibletSet:
     from ..encoding.compress import compress
 
     whole, bits = _whole(sets, np.float64)
-    made = compress(whole, exact=False, max_error=promise, per_point=tuple(whole.per_point), per_point_bits=bits)
+    small = all(SPLINE in coded_kind(one.decoding) for one in sets)
+    made = compress(
+        whole, exact=False, max_error=promise, effort="small" if small else "fast", per_point=tuple(whole.per_point),
+        per_point_bits=bits,
+    )  # fmt: skip
     return replace(made, parameters=replace(made.parameters, promise=2.0 * promise))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numba
 import numpy as np
@@ -12,11 +12,11 @@ import numpy.typing as npt
 from ...support.array_types import Int64s, UInt8s
 from ..direction_codebook import cap_ratios, directions, quaternions
 from ..jit import parallel_kernel
-from ..kernels import beam_kernels, direction_kernels, lattice_kernels, nearest, turn_kernels
+from ..kernels import beam_kernels, direction_kernels, lattice_kernels, nearest, spline_kernels, turn_kernels
 from ..layout import CAPS
 
 if TYPE_CHECKING:
-    from ..parameters import Parameters
+    from ..parameters import Effort, Parameters
 
 Ints = npt.NDArray[np.int64]
 
@@ -41,12 +41,13 @@ class CompiledCoder:
         # only segments longer than the first (mm) count; sine of the largest angle, and its
         # chord in the unit circle
         bound: tuple[float, float, float],
-        effort: Literal["fast", "high"] = "fast",
+        effort: Effort = "fast",
     ) -> None:
         # One type of points, so that no kernel is compiled twice.
         self._points = points.astype(np.float64, copy=False)
         self._offsets, self._parameters, self._bound = offsets, parameters, bound
-        self._kernels = direction_kernels if effort == "fast" else beam_kernels
+        self._kernels = beam_kernels if effort == "high" else direction_kernels
+        self._splines = effort == "small"
         self._grid = np.array(parameters.anchor_scale), 2.0**parameters.anchor_bits - 1.0
         self._origin = np.array(parameters.origin)
 
@@ -60,19 +61,24 @@ class CompiledCoder:
         return slots, per
 
     def code_directions(self, slots: Ints, end: npt.NDArray[np.uint8], out: tuple[npt.NDArray[Any], ...]) -> None:
-        """Try to code every slot with direction bytes."""
-        # `out` is `ok`, `shape`, `step`, `cap`, `radius` (mm), `end_words` of `m` slots, and `codes (n,)`, where a
-        # slot's codes stand where its points stand.
+        """Try to code every slot that is not `ok` with direction bytes, or by a spline of fewer."""
+        # `out` is `ok`, `kind`, `shape`, `step`, `cap`, `radius` (mm), `end_words` of `m` slots, and `codes (n,)`, in
+        # which a slot's codes stand where its points stand.
         p = self._parameters
-        ok, shape, step, cap, radius, end_words, codes = out
+        ok, kind, shape, step, cap, radius, end_words, codes = out
+        for tails in (False, True) if self._splines else ():
+            spline_kernels.encode_splines(
+                self._points, self._origin, slots, *self._grid, p.lattice, p.budget, self._bound, p.end_scale,
+                spline_kernels.NORMAL_EQUATIONS, tails, (ok, kind, shape, step, cap, radius, end, end_words, codes),
+            )  # fmt: skip
         self._kernels.encode_directions(
             self._points, self._origin, slots, *self._grid, (p.step_lo, p.step_hi), p.budget, self._bound,
             p.end_scale, search_tables(), (ok, shape, step, cap, radius, end, end_words, codes),
         )  # fmt: skip
 
-    def gather(self, codes: npt.NDArray[np.uint8], slots: Ints, which: Ints, at: Ints, out: Any) -> None:
-        """Lay the codes of slots ``which`` end to end, each from byte ``at`` of its slot on."""
-        _gather(codes, slots, which, at, out)
+    def gather(self, codes: npt.NDArray[np.uint8], first: Ints, size: Ints, at: Ints, out: Any) -> None:
+        """Copy runs of codes: so many bytes from ``first`` on, to ``at``."""
+        _gather(codes, first, size, at, out)
 
     def plan_lattices(self, slots: Ints, end: npt.NDArray[np.uint8], wanted: Ints) -> tuple[Ints, Ints]:
         """Plan how slots ``wanted`` are split: number of pieces, and bytes of their codes."""
@@ -96,9 +102,7 @@ class CompiledCoder:
 
 
 @parallel_kernel
-def _gather(codes: UInt8s, slots: Int64s, which: Int64s, code_at: Int64s, packed: UInt8s) -> None:
-    for w in numba.prange(len(which)):
-        slot = which[w]
-        first, at = slots[slot, 0], code_at[slot]
-        for i in range(slots[slot, 1] - 2):
-            packed[at + i] = codes[first + i]
+def _gather(codes: UInt8s, first: Int64s, size: Int64s, at: Int64s, packed: UInt8s) -> None:
+    for run in numba.prange(len(first)):
+        for i in range(size[run]):
+            packed[at[run] + i] = codes[first[run] + i]

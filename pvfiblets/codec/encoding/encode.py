@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -20,8 +20,8 @@ from ...formats.mapped import forget
 from ...formats.scratch import is_long
 from ...streamlines import Streamlines
 from ...support.ragged import blocks
-from ..layout import MAX_POINTS
-from ..parameters import DEFAULT_ANGLE
+from ..layout import MAX_POINTS, NODE_BYTES, WIDE
+from ..parameters import DEFAULT_ANGLE, Effort
 from ..small_sets import without_kernels
 from ..tangents import PIXELS
 from .record_writer import FibletChunk, RecordWriter
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from ..arrays.array_coder import ArrayCoder
     from .compiled_coder import CompiledCoder
 
-Effort = Literal["fast", "high"]
-
 LONG_PART = 2_000_000  # points of a very long streamline that are coded at a time
 
 
@@ -39,14 +37,14 @@ LONG_PART = 2_000_000  # points of a very long streamline that are coded at a ti
 class Encoder(RecordWriter):
     """Codes chunks of streamlines."""
 
-    effort: Effort = "fast"  # greedy, or looking ahead with a beam
+    effort: Effort = "fast"  # greedy, or looking ahead with a beam, or by splines where these take fewer bytes
     # largest angle between true and drawn tangents, degrees, at the ends of segments longer than a pixel of a
     # full-screen view (`.tangents`); None leaves directions alone
     max_angle: float | None = DEFAULT_ANGLE
 
     def __post_init__(self) -> None:
-        if self.effort not in ("fast", "high"):
-            raise ValueError(f"effort is {self.effort!r}; 'fast' or 'high' is needed")
+        if self.effort not in get_args(Effort):
+            raise ValueError(f"effort is {self.effort!r}; 'fast', 'high' or 'small' is needed")
         if self.max_angle is not None and not 0.0 < self.max_angle <= 90.0:
             raise ValueError(f"max_angle is {self.max_angle}; degrees above 0 and up to 90 are needed, or None for any")
 
@@ -73,7 +71,7 @@ class Encoder(RecordWriter):
         """Code the next streamlines."""
         points = np.ascontiguousarray(streamlines.points)
         offsets = np.asarray(streamlines.offsets, np.int64)
-        if self.effort == "high":
+        if self.effort != "fast":
             return self._add(self._coder(points, offsets, True), points, offsets)
         with without_kernels("coding", len(points)) as small:
             return self._add(self._coder(points, offsets, not small), points, offsets)
@@ -153,23 +151,26 @@ def _code(
 ) -> tuple[dict[str, npt.NDArray[Any]], npt.NDArray[np.uint8]]:
     """Code slots; the slots `left_out` get a row and the bytes of direction codes, with any content."""
     m = len(slots)
-    ok, shape, step = np.zeros(m, np.uint8), np.zeros(m, np.uint32), np.zeros(m, np.uint16)
-    cap, radius, codes = np.zeros(m, np.uint8), np.zeros(m), np.zeros(n_points, np.uint8)
-    end_words = np.zeros(m, np.uint32)
-    coder.code_directions(slots, end, (ok, shape, step, cap, radius, end_words, codes))
+    ok, kind, shape = np.zeros(m, np.uint8), np.zeros(m, np.uint8), np.zeros(m, np.uint32)
+    step, cap, radius = np.zeros(m, np.uint16), np.zeros(m, np.uint8), np.zeros(m)
+    codes, end_words = np.zeros(n_points, np.uint8), np.zeros(m, np.uint32)
     if left_out is not None:
         ok[left_out] = 1
+    coder.code_directions(slots, end, (ok, kind, shape, step, cap, radius, end_words, codes))
 
-    wanted = np.flatnonzero(ok == 0)
-    pieces, size = np.ones(m, np.int64), np.maximum(slots[:, 1] - 2, 0)
+    wanted, done = np.flatnonzero(ok == 0), np.flatnonzero(ok)
+    pieces = np.ones(m, np.int64)
+    size = np.where(kind == WIDE, (step >> 3).astype(np.int64) * NODE_BYTES, np.maximum(slots[:, 1] - 2, 0))
     if wanted.size:
         pieces[wanted], size[wanted] = coder.plan_lattices(slots, end, wanted)
     fiblet_at, code_at = np.cumsum(pieces) - pieces, np.cumsum(size) - size
     total, n_codes = int(pieces.sum()), int(size.sum())
     packed = np.empty(n_codes, np.uint8)
-    coder.gather(codes, slots, np.flatnonzero(ok), code_at, packed)
+    source, tails = slots[:, 0].copy(), np.flatnonzero((kind == WIDE) & (size > slots[:, 1] - 3))
+    source[tails] = source[tails - 1] + size[tails - 1]
+    coder.gather(codes, source[done], size[done], code_at[done], packed)
     rows = {name: _spread(total, fiblet_at, a) for name, a in (("shape", shape), ("step", step), ("cap", cap))}
-    rows["kind"] = np.zeros(total, np.uint8)
+    rows["kind"] = _spread(total, fiblet_at, kind)
     rows["end_words"] = _spread(total, fiblet_at, end_words)
     rows["counts"], rows["point_start"] = (_spread(total, fiblet_at, slots[:, i]) for i in (1, 0))
     rows["code_start"], rows["radii"] = _spread(total, fiblet_at, code_at), _spread(total, fiblet_at, radius)

@@ -46,7 +46,8 @@ from .fiblets_file import CORE, OPTIONAL, index_members, make_header, write
 from .file_error import compare_file
 
 if TYPE_CHECKING:
-    from ..encoding.encode import Effort, Encoder
+    from ..encoding.encode import Encoder
+    from ..parameters import Effort
 
 SAMPLE_POINTS = 1_000_000  # compared points of a large file, about
 
@@ -170,9 +171,10 @@ def compress_file(
             encoder.parameters = replace(encoder.parameters, promise=tracts.promise)
         header_set = whole.without_records(encoder, pages, found)
         members = spool.members()
-        header, more = make_header(header_set, {k: members.pop(k) for k in whole.per_point})
+        mapped = spool.mapped(header_set)
+        told = replace(header_set, decoding=mapped.decoding)
+        header, more = make_header(told, {k: members.pop(k) for k in whole.per_point})
         if prepare is not None:
-            mapped = spool.mapped(header_set)
             prepare(mapped)
             members |= index_members(mapped)
         write(target, header, members | more, small=small)

@@ -23,7 +23,7 @@ from ...errors import FormatError
 from ...streamlines import Streamlines, offsets_from_counts
 from ...support.addresses import is_url
 from ..encoding.exact import plain_records
-from ..layout import PAGE, WORDS
+from ..layout import PAGE, SPLINE, WORDS, coded_kind
 from ..parameters import Parameters, bounds_of, survey
 from ..point_values import PointValues, linear_table, opened_table, stored_table
 from .archive import Member, array_member, open_archive, write_archive
@@ -37,8 +37,9 @@ OF_CODES = 2
 """Version of files that hold records and codes, which older programs read too."""
 
 OF_POINTS = 3
-VERSION = 4
-"""Version of files with packed members; that of other exact sets is `OF_POINTS`."""
+PACKED = 4
+VERSION = 5
+"""Version of files with fiblets of splines; of others with packed members `PACKED`, of other exact sets `OF_POINTS`."""
 
 INDEX = "_spatial_index"  # attribute of a set, no field of it: a set that is made of another has other fiblets
 INDEX_MEMBERS = ("spatial_index/order.npy", "spatial_index/leaves.npy", "spatial_index/pieces.npy")
@@ -71,7 +72,7 @@ def write(path: str | PathLike[str], header: dict[str, Any], members: dict[str, 
     """Write an archive, with packed members where it is to be small."""
     if small:
         facts, members = pack_members(members)
-        header = header | {"version": VERSION, "packed": facts} if facts else header
+        header = header | {"version": max(PACKED, header["version"]), "packed": facts} if facts else header
     write_archive(path, header, members, small="exact" in header and len(members) == 1)
 
 
@@ -121,7 +122,7 @@ def make_header(fiblets: FibletSet, per_point: dict[str, Member]) -> tuple[dict[
 
     header = {
         "format": "fiblets",
-        "version": OF_CODES,
+        "version": VERSION if SPLINE in coded_kind(np.asarray(fiblets.decoding)) else OF_CODES,
         "parameters": asdict(fiblets.parameters),
         "bounds": list(fiblets.bounds),
         "n_streamlines": fiblets.n_streamlines,
@@ -178,7 +179,7 @@ def open_fiblets(path: str | PathLike[str], kind: type[FibletSet]) -> FibletSet:
         )
     exact = version >= OF_POINTS and "exact" in header
     try:
-        for member, facts in header.get("packed", {}).items() if version == VERSION else ():
+        for member, facts in header.get("packed", {}).items() if version >= PACKED else ():
             arrays[member] = unpack(path, member, facts, arrays[member])
         fiblets = _assemble_exact(path, kind, header, arrays) if exact else _assemble(kind, header, arrays)
     except FormatError:

@@ -170,6 +170,8 @@ def encode_directions(points: Float64s, origin: Float64s, slots: Int64s, scale: 
         scratch = (anchor, states, fresh, parents, chosen)
         units = np.empty((MAX_POINTS, 5))
         for slot in range(block * BLOCK, min((block + 1) * BLOCK, n_slots)):
+            if ok[slot]:
+                continue
             first, n = slots[slot, 0], slots[slot, 1]
             take_points(points, origin, first, n, true)
             for axis in range(3):

@@ -9,8 +9,9 @@ import numpy as np
 
 from ...support.array_types import Float64s, Floats, Int64s, UInt8s, UInt16s, UInt32s
 from ..jit import kernel, parallel_kernel
-from ..layout import DIRECTION, PAGE_BITS, PLAIN_BYTES, STEP_LEVELS, WIDE, WIDE_HEADER
+from ..layout import DIRECTION, NODE_BYTES, PAGE_BITS, PLAIN_BYTES, SPLINE, STEP_LEVELS, WIDE, WIDE_HEADER
 from .direction_kernels import first_frame, turn
+from .spline_kernels import advance, load, point_of, slope
 
 BLOCK = 256  # fiblets a thread decodes in one go
 
@@ -90,6 +91,24 @@ def _decode_plain(
 
 
 @kernel
+def _decode_spline(a: tuple[float, float, float], shape: int, h: float, codes: UInt8s, at: int, nodes: int, n: int,
+                   origin: Float64s, p: Floats) -> None:  # fmt: skip
+    state, node = np.zeros((2, 3)), np.zeros((2, 3))
+    for axis in range(3):
+        state[1, axis] = slope(shape, axis)
+    i = 1
+    for piece in range(nodes):
+        span = load(codes, at + piece * NODE_BYTES, node)
+        for m in range(1, min(span, n - i) + 1):
+            for axis in range(3):
+                p[i, axis] = a[axis] + h * point_of(state, node, m, span, axis) + origin[axis]
+            i += 1
+        advance(state, node, max(span, 1))
+    for rest in range(i, n):  # of a damaged file
+        p[rest] = p[i - 1]
+
+
+@kernel
 def decode_one(f: int, arrays: tuple[UInt32s, UInt32s, UInt8s, Int64s], low: UInt16s, fine: bool, origin: Float64s,
                scale: Float64s, steps: tuple[float, float, float], tables: Float64s, out: Floats,
                row: int) -> int:  # fmt: skip
@@ -108,9 +127,11 @@ def decode_one(f: int, arrays: tuple[UInt32s, UInt32s, UInt8s, Int64s], low: UIn
     n: Any = (w4 >> 20 & 0x3F) + 1
     step, cap, kind = w3 >> 22, w4 >> 26 & 0xF, w4 >> 30
     at = code_base[f >> PAGE_BITS] + (w3 & 0x3FFFFF)
-    size, plain = n - 2, kind == WIDE and step & 7 == 0
+    size, plain, spline = n - 2, kind == WIDE and step & 7 == 0, kind == WIDE and step & 7 == SPLINE
     if plain:
         size = (n - 1) * PLAIN_BYTES
+    elif spline:
+        size = (step >> 3) * NODE_BYTES
     elif kind == WIDE:
         size = WIDE_HEADER + (n - 1) * (step & 7)
     elif kind != DIRECTION:
@@ -127,6 +148,8 @@ def decode_one(f: int, arrays: tuple[UInt32s, UInt32s, UInt8s, Int64s], low: UIn
         _decode_direction(a, shape, length, tables[cap], codes, at, n, origin, p)
     elif plain:
         _decode_plain(a, lattice * 0.5**cap, codes, at, n, origin, p)
+    elif spline:
+        _decode_spline(a, shape, lattice * 0.5**cap, codes, at, step >> 3, n, origin, p)
     else:
         _decode_lattice(a, kind, shape, step, lattice * 0.5**cap, codes, at, n, origin, p)
     return n

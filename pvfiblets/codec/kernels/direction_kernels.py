@@ -265,7 +265,7 @@ def encode_directions(points: Float64s, origin: Float64s, slots: Int64s, scale: 
                       tables: tuple[Float64s, Float64s, Float64s, Int32s, UInt8s],
                       out: tuple[UInt8s, UInt32s, UInt16s, UInt8s, Float64s, UInt8s, UInt32s, UInt8s],
 ) -> None:  # fmt: skip
-    """Try to code every slot (at most 60 consecutive points) with direction bytes."""
+    """Try to code every slot (at most 60 consecutive points) that is not `ok` with direction bytes."""
     ok, shape, step_index, cap_index, radius, end, end_words, codes = out
     lo, hi = steps
     give_up = promise * promise
@@ -278,6 +278,8 @@ def encode_directions(points: Float64s, origin: Float64s, slots: Int64s, scale: 
         following = np.empty(3)
         units = np.empty((MAX_POINTS, 5))
         for slot in range(block * BLOCK, min((block + 1) * BLOCK, n_slots)):
+            if ok[slot]:
+                continue
             first, n = slots[slot, 0], slots[slot, 1]
             take_points(points, origin, first, n, true)
             for axis in range(3):

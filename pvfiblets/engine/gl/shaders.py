@@ -45,6 +45,7 @@ FEATURES: dict[str, str] = {
     "DIRECTION": "fiblets of direction codes",
     "LATTICE": "fiblets of lattice codes",
     "WIDE_LATTICE": "lattice fiblets with their box in the code stream",
+    "SPLINE": "fiblets of cubic splines",
     "RANK_TO_ID": "streamlines without points among the others",
     "TEXTURE_DATA": "data from buffer textures, where OpenGL has no storage buffers",
     "WIDE_LINES": "lines wider than one pixel",

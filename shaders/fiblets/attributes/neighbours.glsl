@@ -11,6 +11,11 @@
 vec3 first_segment(uint f) {
     uvec3 words = decoding_words(f);
     if (fiblet_last(words) == 0u) return ends(f) ? vec3(0.0) : anchor_local(f + 1u) - anchor_local(f);
+#if FEATURE_SPLINE
+    if (coded_kind(words) == KIND_SPLINE) {
+        return lattice_edge * exp2(-float(fiblet_cap(words))) * spline_point(begin_spline(words, first_code(f, words)), 1u);
+    }
+#endif
 #if FEATURE_LATTICE
     if (fiblet_kind(words) != KIND_DIRECTION) {
         uint byte = first_code(f, words), width;

@@ -49,6 +49,11 @@ float walk_margin(uint i) {
     if (walk.kind == KIND_DIRECTION) {
         run = n * walk.step;
         drift = 12.0 * (n + 1.0) * run;
+#if FEATURE_SPLINE
+    } else if (walk.kind == KIND_SPLINE) {
+        run = walk.path;
+        drift = 160.0 * (run + walk.step);
+#endif
     } else {
         run = distance(walk_point, walk_anchor);
         drift = 40.0 * run;

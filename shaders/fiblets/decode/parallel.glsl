@@ -8,7 +8,8 @@
 //   product      (r_a, t_a) (r_b, t_b) = (r_a r_b, t_a + r_a t_b)
 //
 // The paper multiplies 4 x 4 matrices without their constant entries; a quaternion and a vector are 7 numbers, not 12.
-// Lattice fiblets need no product: the same passes add up integers, without a rounding.
+// Lattice fiblets need no product: the same passes add up integers, without a rounding. Of splines each invocation finds the piece
+// of its points, of at most nine.
 //
 // Algorithm (Sklansky's network): in pass p, every block of 2^(p+1) elements multiplies its upper half by the last
 // element of its lower half. Each pass is 32 products for 64 elements, in place, with one barrier:
@@ -19,7 +20,8 @@
 //       p = 2          +->->->->        (3 into 4 to 7)
 //
 // Use: all invocations of the group call decode_together(f); then prefix_point[0 .. last] are local millimetres, and
-// prefix_point[last + 1] the next fiblet's anchor unless the streamline ends. The call begins and ends with a barrier.
+// prefix_point[last + 1] the next fiblet's anchor unless the streamline ends. Of splines prefix_frame has the curve's points. The
+// call begins and ends with a barrier.
 
 #include "fiblets/decode/words.glsl"
 
@@ -44,7 +46,8 @@ vec4 product(vec4 a, vec4 b) {
 void decode_together(uint f) {
     uvec3 words = decoding_words(f);
     uint last = fiblet_last(words), byte = first_code(f, words), thread = gl_LocalInvocationIndex;
-    bool moves = fiblet_kind(words) == KIND_DIRECTION;
+    uint kind = coded_kind(words);
+    bool moves = kind == KIND_DIRECTION;
     float unit = 0.0;
     barrier();  // whatever an earlier call left has been read
 
@@ -63,7 +66,7 @@ void decode_together(uint f) {
 #endif
 #if FEATURE_LATTICE
         prefix_lattice[i] = ivec3(0);
-        if (held && !moves) {
+        if (held && !moves && kind != KIND_SPLINE) {
             uint at = byte, width;
             uvec2 n;
             ivec3 lo;
@@ -90,7 +93,7 @@ void decode_together(uint f) {
     }
 
     // (d) positions
-#if FEATURE_LATTICE
+#if FEATURE_LATTICE || FEATURE_SPLINE
     unit = lattice_edge * exp2(-float(fiblet_cap(words)));
 #endif
     vec3 anchor = anchor_local(f);
@@ -99,6 +102,13 @@ void decode_together(uint f) {
         vec3 point = anchor + prefix_point[i];
 #if FEATURE_LATTICE
         if (!moves) point = anchor + unit * vec3(prefix_lattice[i]);
+#endif
+#if FEATURE_SPLINE
+        if (kind == KIND_SPLINE) {
+            vec3 local = i > 0u && last > 0u ? spline_at(words, byte, min(i, last)) : vec3(0.0);
+            prefix_frame[i] = vec4(local, 0.0);
+            point = anchor + unit * local;
+        }
 #endif
         if (i == last + 1u && !end) point = anchor_local(f + 1u);
         prefix_point[i] = point;

@@ -9,6 +9,7 @@
 //
 // Algorithm
 //   direction:   q <- q T[cap][code] from the third point on; P <- P + step (q X)
+//   splines:     P = P_0 + h times the curve's point, its pieces one after the other
 //   lattice:     c = code; K <- K + lo + (c mod n.x, c / n.x mod n.y, c / (n.x n.y)); P = P_0 + h K
 //
 // Use: walk_begin(f), then walk_next(i) for i = 1, 2, ... walk.last, in order. Everything is `precise`: the pass that
@@ -27,9 +28,18 @@ struct Walk {
     uvec2 n;
     ivec3 lo;
     ivec3 k;
+    uint m;        // point of the spline's piece
+    float path;    // mm from point to point, along a spline
 };
 
 Walk walk;
+#if FEATURE_SPLINE
+Spline walk_spline;
+vec3 walk_local;
+#if __VERSION__ >= 400
+precise walk_local;
+#endif
+#endif
 vec3 walk_anchor;
 vec3 walk_point;
 vec3 walk_delta;
@@ -48,13 +58,23 @@ void walk_begin(uint f) {
     walk_point = walk_anchor;
     walk_delta = vec3(0.0);
     walk.last = fiblet_last(words);
-    walk.kind = fiblet_kind(words);
+    walk.kind = coded_kind(words);
     walk.byte = first_code(f, words);
 #if FEATURE_DIRECTION
     walk.cap = fiblet_cap(words);
     walk.scale = rotation_scale(walk.cap);
     walk.step = step_length(words);
     walk_frame = first_frame(fiblet_shape(words));
+#endif
+#if FEATURE_SPLINE
+    if (walk.kind == KIND_SPLINE) {
+        walk.step = lattice_edge * exp2(-float(fiblet_cap(words)));
+        walk.m = 0u;
+        walk.path = 0.0;
+        walk_local = vec3(0.0);
+        if (walk.last > 0u) walk_spline = begin_spline(words, walk.byte);
+        return;
+    }
 #endif
 #if FEATURE_LATTICE
     if (walk.kind != KIND_DIRECTION) {
@@ -67,6 +87,21 @@ void walk_begin(uint f) {
 
 // Moves to point i.
 void walk_next(uint i) {
+#if FEATURE_SPLINE
+    if (walk.kind == KIND_SPLINE) {
+        if (walk.m == walk_spline.n) {
+            next_piece(walk_spline);
+            walk.m = 0u;
+        }
+        walk.m += 1u;
+        vec3 local = spline_point(walk_spline, walk.m);
+        walk_delta = walk.step * (local - walk_local);
+        walk_local = local;
+        walk_point = walk_anchor + walk.step * local;
+        walk.path += length(walk_delta);
+        return;
+    }
+#endif
 #if FEATURE_LATTICE
     if (walk.kind != KIND_DIRECTION) {
         ivec3 cell = lattice_cell(walk.byte, walk.width, walk.lo, walk.n);

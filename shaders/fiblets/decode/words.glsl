@@ -38,6 +38,14 @@ vec4 rotation(uint cap, uint code, float scale) {
     return vec4(0.0, t, w);
 }
 
+// A fiblet of splines is of the kind WIDE, with a width that no lattice has.
+uint coded_kind(uvec3 words) {
+#if FEATURE_SPLINE
+    if (fiblet_kind(words) == KIND_WIDE && (fiblet_step(words) & 7u) == KIND_SPLINE) return KIND_SPLINE;
+#endif
+    return fiblet_kind(words);
+}
+
 float sign_of(int value) { return value < 0 ? -1.0 : 1.0; }
 
 float step_length(uvec3 words) { return step_low + float(fiblet_step(words)) * (step_span / FIBLET_STEP_LEVELS); }
@@ -68,6 +76,68 @@ vec4 turned(vec4 a, vec4 t) {
                           a.w * t.z + a.x * t.y + a.z * t.w, a.w * t.w - a.y * t.y - a.z * t.z);
     return q;
 }
+
+#if FEATURE_SPLINE
+// A fiblet of cubic pieces end to end (this program's own; pvfiblets/codec/kernels/spline_kernels.py has the symbols): from a place
+// and a slope, points m = 1 .. n at place + m slope + x^2 (d - 2 e) + 2 e x^3, with x = m / n. In powers of m a point takes three
+// products.
+struct Spline {
+    vec3 place;    // in units of the lattice's edge, from the anchor
+    vec3 slope;    // a point
+    vec3 square;   // (d - 2 e) / n^2
+    vec3 cube;     // 2 e / n^3
+    uint n;
+    uint byte;     // where the next node stands
+};
+
+vec3 signed_bits(int word, int low, int count) {
+    return vec3(bitfieldExtract(word, low, count), bitfieldExtract(word, low + count, count),
+                bitfieldExtract(word, low + 2 * count, count));
+}
+
+void load_node(inout Spline s) {
+    int low = int(codes_at(s.byte)), high = int(codes_at(s.byte + 2u));
+    s.n = max(uint(low) & 63u, 1u);
+    vec3 d = signed_bits(low, 6, FIBLET_NODE_BITS), e = signed_bits(high, 11, FIBLET_NODE_BITS);
+    precise float share = 1.0 / float(s.n);
+    precise vec3 square = (d - 2.0 * e) * share * share, cube = 2.0 * e * share * share * share;
+    s.square = square;
+    s.cube = cube;
+    s.byte += FIBLET_NODE_BYTES;
+}
+
+Spline begin_spline(uvec3 words, uint byte) {
+    int shape = int(fiblet_shape(words));
+    float scale = exp2(float(2u * (uint(shape) >> 30u)) - float(FIBLET_SLOPE_SHIFT));
+    Spline s;
+    s.place = vec3(0.0);
+    s.slope = scale * signed_bits(shape, 0, FIBLET_SLOPE_BITS);
+    s.byte = byte;
+    load_node(s);
+    return s;
+}
+
+vec3 spline_point(Spline s, uint m) {
+    float t = float(m);
+    precise vec3 p = s.place + t * (s.slope + t * (s.square + t * s.cube));
+    return p;
+}
+
+void next_piece(inout Spline s) {
+    float n = float(s.n);
+    precise vec3 slope = s.slope + n * (2.0 * s.square + 3.0 * n * s.cube);
+    s.place = spline_point(s, s.n);
+    s.slope = slope;
+    load_node(s);
+}
+
+// Point i >= 1 of a fiblet.
+vec3 spline_at(uvec3 words, uint byte, uint i) {
+    Spline s = begin_spline(words, byte);
+    for (; i > s.n; next_piece(s)) i -= s.n;
+    return spline_point(s, i);
+}
+#endif
 
 #if FEATURE_LATTICE
 // The box of a lattice fiblet: its least corner, its size, bytes per code, and where the codes start.

@@ -30,6 +30,7 @@ struct Group {
     vec3 far_to;
     float unit;      // mm that decoded steps are in units of: the step of a direction fiblet, or the lattice's edge
     bool moves;      // of direction codes
+    bool curved;
 #if FEATURE_WIDE_LINES
     vec3 beyond;     // the run after its last segment, where the line goes on there as it does here
 #endif
@@ -48,6 +49,9 @@ vec3 delta_of(uint i) {
     if (i < group.last) {
 #if FEATURE_DIRECTION
         if (group.moves) return group.unit * rotated_x(prefix_frame[i + 1u]);
+#endif
+#if FEATURE_SPLINE
+        if (group.curved) return group.unit * (prefix_frame[i + 1u].xyz - prefix_frame[i].xyz);
 #endif
 #if FEATURE_LATTICE
         if (!group.moves) return group.unit * vec3(prefix_lattice[i + 1u] - prefix_lattice[i]);
@@ -115,7 +119,8 @@ void draw_share(uint f, uint share) {
     group.begin = begins(f);
     group.end = ends(f);
     group.whole = false;
-    group.moves = fiblet_kind(words) == KIND_DIRECTION;
+    group.moves = coded_kind(words) == KIND_DIRECTION;
+    group.curved = coded_kind(words) == KIND_SPLINE;
     group.spans = group.end && last == 0u ? 0.0 : 1.0;
     group.count = last + (group.end && last > 0u ? 0u : 1u);
     group.unit = group.moves ? step_length(words) : lattice_edge * exp2(-float(fiblet_cap(words)));

@@ -47,8 +47,9 @@ def decoding_features(fiblets: FibletSet, chunks: list[Chunk]) -> list[str]:
     wanted = {
         "ANCHORS_LOW": fiblets.anchors_low is not None,
         "DIRECTION": layout.Kind.DIRECTION in kinds,
-        "LATTICE": bool(kinds - {layout.Kind.DIRECTION}),
+        "LATTICE": bool(kinds - {layout.Kind.DIRECTION, layout.SPLINE}),
         "WIDE_LATTICE": layout.Kind.WIDE in kinds,
+        "SPLINE": layout.SPLINE in kinds,
         "RANK_TO_ID": fiblets.rank_to_id is not None,
     }
     return [name for name, on in wanted.items() if on]

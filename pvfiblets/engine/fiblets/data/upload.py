@@ -61,7 +61,7 @@ def upload_chunk(ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan, sho
     n = last - first
     # Its last streamline may go on in the next chunk: one rank more than begins here.
     ranks = int(fiblets.pages[plan.pages[0], 0]), min(int(fiblets.pages[plan.pages[1], 0]) + 1, len(fiblets.ends))
-    kinds = np.zeros(4, np.int64)
+    kinds = np.zeros(layout.SPLINE + 1, np.int64)
     arrays = {
         "anchors": _with_next(fiblets.anchors, first, last),
         "bounds": _bounds(fiblets, (first, last), ranks),
@@ -137,7 +137,7 @@ def release_chunks(chunks: list[Chunk]) -> None:
 def _counting(decoding: Array, first: int, last: int, kinds: npt.NDArray[np.int64]) -> Iterator[Array]:
     """Decoding words; which kinds of fiblets they are of is counted in passing."""
     for rows in rows_of(decoding, first, last):
-        kinds += np.bincount(layout.unpack("kind", rows), minlength=4)
+        kinds += np.bincount(layout.coded_kind(rows), minlength=len(kinds))
         yield rows
 
 

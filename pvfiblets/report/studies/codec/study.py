@@ -91,6 +91,7 @@ def variants(quick: bool) -> list[Variant]:
     found = [
         Variant("fiblets", DEFAULT, _fiblets(None, "fast"), ours=True, default=True),
         Variant("fiblets, look-ahead", DEFAULT, _fiblets(None, "high"), ours=True),
+        Variant("fiblets, splines", DEFAULT, _fiblets(None, "small"), ours=True),
         Variant("QFib", "8 bits", lambda _: QFib(8)),
         Variant("QFib", "16 bits", lambda _: QFib(16)),
         Variant("paper's fiblets", "", lambda _: PaperFiblets()),
@@ -222,7 +223,7 @@ STUDY = Study(
         f"fewer than {SMALL:,} points are measured but not drawn: their times are the cost of a call.",
         "*fiblets*: greedy encoder, with the error bound as the setting (*default*: a tenth of the step, where steps "
         "vary or are coarse a 4000th of a view's diagonal at most, and directions within 10°; others do not bound "
-        "directions); *look-ahead*: effort high; *fiblets of 30 "
+        "directions); *look-ahead*: effort high; *splines*: effort small; *fiblets of 30 "
         "points*: records of at most 30 points instead of 60. *QFib*, *paper's fiblets*: from their description "
         "in Schertzer et al. 2022 (pvfiblets/report/studies/codec/baselines/directions.py says what it leaves open), "
         "with the file's "

@@ -86,6 +86,34 @@ def decode_lattice(
     return anchor + edge * k
 
 
+def decode_spline(
+    anchor: Array, shape: int, nodes: int, edge: float, codes: npt.NDArray[np.uint8], count: int
+) -> Array:
+    """Points of a fiblet of splines, ``(count, 3)`` float64, as Hermite curves between nodes."""
+    scale = 4.0 ** (shape >> 30) / 8.0
+    place, slope = np.zeros(3), scale * np.array([_signed(shape >> 10 * axis, 10) for axis in range(3)], float)
+    local = [place]
+    for node in range(nodes):
+        word = int.from_bytes(codes[6 * node : 6 * node + 6].tobytes(), "little")
+        n = word & 63
+        d, e = np.array([_signed(word >> (6 + 7 * k), 7) for k in range(6)], float).reshape(2, 3)
+        end, then = place + n * slope + d, slope + 2.0 * (d + e) / n
+        for m in range(1, n + 1):
+            x = m / n
+            local.append(
+                (1.0 + 2.0 * x) * (1.0 - x) ** 2 * place + x * (1.0 - x) ** 2 * n * slope
+                + x * x * (3.0 - 2.0 * x) * end + x * x * (x - 1.0) * n * then
+            )  # fmt: skip
+        place, slope = end, then
+    assert len(local) == count
+    return anchor + edge * np.array(local)
+
+
+def _signed(bits: int, width: int) -> int:
+    bits &= (1 << width) - 1
+    return bits - (1 << width) if bits >> (width - 1) else bits
+
+
 def _unpack_direction(word: int) -> tuple[Array, bool]:
     """Unit vector that two snorm16 on the octahedron about +x stand for, and whether its x is not negative."""
     iu, iv = _int16(word & 0xFFFF), _int16(word >> 16)

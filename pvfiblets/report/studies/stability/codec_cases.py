@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from pvfiblets.codec.encoding.encode import Effort
 from pvfiblets.codec.encoding.resample import resample
+from pvfiblets.codec.parameters import Effort
 from pvfiblets.codec.point_values import code_values
 from pvfiblets.report.studies.codec.coded import compress
 from pvfiblets.streamlines import Streamlines
@@ -18,7 +18,7 @@ from .synthetic_lines import differences, from_segments, helix, lines_of, tracki
 CASES = Cases("codec")
 WITHIN = "every decoded point within the promise of its original; counts as they were"
 BOUND = "of the error bound"
-EFFORTS: tuple[Effort, ...] = ("fast", "high")
+EFFORTS: tuple[Effort, ...] = ("fast", "high", "small")
 ANGLES = np.geomspace(1e-6, np.pi, 25)  # radians
 SIZES = (1e-6, 1e-3, 1.0, 1e3, 1e6)  # mm
 MANY, LONG, LONG_IN_TESTS = 1_000_000, 10_000_000, 1_000_000
