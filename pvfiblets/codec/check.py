@@ -104,7 +104,7 @@ def check_records(fiblets: FibletSet, path: str | PathLike[str] = "fiblets in me
 def _spans(
     codes: npt.NDArray[np.uint8], decoding: npt.NDArray[np.uint32], starts: npt.NDArray[np.int64]
 ) -> npt.NDArray[np.int64]:
-    """Points behind the first of each fiblet; of splines those that their nodes span."""
+    """Points behind the first of each fiblet; of splines, the sum of the nodes' spans."""
     spans = unpack("last", decoding).astype(np.int64)
     splines = np.flatnonzero(coded_kind(decoding) == SPLINE)
     nodes, at = unpack("step", decoding)[splines].astype(np.int64) >> 3, np.asarray(starts[splines], np.int64)

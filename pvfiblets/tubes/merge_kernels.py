@@ -93,7 +93,7 @@ def _nearest(nodes: Float64s, slopes: Float64s, first: int, last: int, scales: F
 @kernel
 def _fits(nodes: Float64s, slopes: Float64s, chords: Float64s, scaled: bool, tolerance: float, first: int, last: int,
           scales: Float64s, aim: Float64s) -> bool:  # fmt: skip
-    """Return whether the segment from row `first` to row `last` stays within the bound of those between."""
+    """Return whether the segment from row `first` to row `last` stays within the bound of the rows between."""
     # Comparisons are such that NaN, as where numbers overflow, does not fit.
     total, square = 0.0, 0.0
     for row in range(first, last):

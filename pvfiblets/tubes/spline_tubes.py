@@ -330,7 +330,7 @@ class SplineTubes:
         )
 
     def simplify(self, tolerance: float, *, value_share: float = 0.01) -> SplineTubes:
-        """Merge segments, as many as an error bound allows.
+        """Merge segments within an error bound.
 
         A run of segments of one tube becomes one segment between two of the old nodes. These nodes stay as they are:
         also the simplified tubes are smooth. Ends, bifurcations and points where tubes meet are always kept.
@@ -414,7 +414,7 @@ class SplineTubes:
         starts, stops = (np.bincount(ends, minlength=self.n_nodes) for ends in (start, stop))
         inner = (starts == 1) & (stops == 1)
         if not self.scaled:
-            # Branches share their node's derivatives, of which a merged segment would need larger ones.
+            # Branches share their node's derivatives; a merged segment would need larger ones.
             inner[self.segments[(starts + stops > 2)[self.segments].any(axis=1)]] = False
         after = np.full(self.n_nodes, -1)
         after[start] = np.arange(self.n_segments)

@@ -96,8 +96,8 @@ def compress(
         `max_error` is coarse.
     effort : {'fast', 'high', 'small'}
         'high' looks ahead with a beam while coding: a tenth of the speed for a lower mean error at the same bytes.
-        'small' codes points of even steps as cubic splines where these take fewer bytes: 0.5 to 0.85 times as many in
-        all, at the same bounds, with mean errors that are mostly 4 to 11 times as large.
+        'small' codes points of even steps as cubic splines where these take fewer bytes: 0.5 to 0.85 times the bytes
+        in all, at the same bounds, with mean errors that are mostly 4 to 11 times as large.
     order : {'input', 'hilbert'}
         'hilbert' codes streamlines along a space-filling curve (:mod:`pvfiblets.codec.encoding.ordering`): pages become
         compact in space, which culling of very large sets gains from. Whatever is decoded comes in the order of the

@@ -194,7 +194,7 @@ def _pieces(true: Float64s, n: int, total: int, room: int, anchor: Float64s, h: 
     while first < last:
         if (nodes + 1) * NODE_BYTES > room:
             return 0
-        # Spans are doubled while the bounds hold, and halved between those that hold and those that do not.
+        # Spans are doubled while the bounds hold, then bisected.
         good, bad, tried = 0, last - first + 1, min(span, last - first)
         while bad - good > 1:
             ahead = min(AHEAD, total - 1 - first - tried)
@@ -225,7 +225,7 @@ def encode_splines(points: Float64s, origin: Float64s, slots: Int64s, scale: Flo
     """Code the slots that are not yet, of streamlines that splines make smaller than directions would."""
     # A streamline's last few points take more bytes as a spline. With `tails` they are splines as well if the slot
     # before saves that much: a set without a fiblet of directions is drawn by programs without them. Their codes stand
-    # behind those of the slot before, where there is room.
+    # in the free bytes of the slot before.
     ok, kind, shape, step, cap, radius, end, end_words, codes = out
     h = edge * 0.5**HALVINGS
     for block in numba.prange((len(slots) + BLOCK - 1) // BLOCK):
