@@ -25,13 +25,14 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 MARGIN = 2.0**-16
+SMALLEST = float(np.finfo(np.float64).tiny)  # square of a chord whose inverse is finite
 
 
 def distances(points: Array, a: Array, b: Array) -> Array:
     """Distances of points from a segment."""
     chord = b - a
     squares = float(chord @ chord)
-    t = np.clip((points - a) @ chord / squares, 0.0, 1.0) if squares > 0.0 else np.zeros(len(points))
+    t = np.clip((points - a) @ chord / squares, 0.0, 1.0) if squares >= SMALLEST else np.zeros(len(points))
     found: Array = np.linalg.norm(points - a - t[:, None] * chord, axis=1)
     return found
 

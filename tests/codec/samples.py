@@ -91,6 +91,7 @@ def extremes():
         ),
         "one long step": one([np.concatenate([np.zeros((1, 3)), points[:80] + 1e5])]),
         "denormal coordinates": one([rng.normal(size=(70, 3)) * 1e-310]),
+        "coordinates with denormal squares": one([np.cumsum(rng.normal(size=(70, 3)), axis=0) * 1e-170]),
         "huge coordinates": one([rng.normal(size=(70, 3)) * 1e30]),
         "flat": Streamlines(points * [1, 1, 0], base.offsets),
     }

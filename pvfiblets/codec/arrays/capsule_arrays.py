@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ..capsules import MARGIN
+from ..capsules import MARGIN, SMALLEST
 from ..layout import END_LEVELS, pack_ends
 
 Array = npt.NDArray[np.float64]
@@ -28,7 +28,7 @@ def capsules(
     arc = _size(last - to)
     chord = to - first
     squares = chord[0] * chord[0] + chord[1] * chord[1] + chord[2] * chord[2]
-    inverse = np.divide(1.0, squares, out=np.zeros(k), where=squares > 0.0)
+    inverse = np.divide(1.0, squares, out=np.zeros(k), where=squares >= SMALLEST)
     widest = np.zeros(k)
     for i in range(1, most):
         inside = i < counts

@@ -8,7 +8,7 @@ import numba
 import numpy as np
 
 from ...support.array_types import Bools, Float64s, Int64s, UInt16s, UInt32s
-from ..capsules import MARGIN
+from ..capsules import MARGIN, SMALLEST
 from ..jit import kernel, parallel_kernel
 from ..layout import END_BITS, END_LEVELS
 
@@ -48,7 +48,7 @@ def _widest(points: Float64s, a: int, b: int, bx: float, by: float, bz: float) -
     x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
     vx, vy, vz = bx - x0, by - y0, bz - z0
     squares = vx * vx + vy * vy + vz * vz
-    inverse = 1.0 / squares if squares > 0.0 else 0.0
+    inverse = 1.0 / squares if squares >= SMALLEST else 0.0
     widest = 0.0
     for i in range(a + 1, b):
         dx, dy, dz = points[i, 0] - x0, points[i, 1] - y0, points[i, 2] - z0
