@@ -132,7 +132,7 @@ def test_extreme_lines(name):
     whole = pf.compress(lines)
     size = float(np.ptp(lines.points, axis=0).max()) / 60.0 if lines.n_points else 1.0
     middle = tuple(lines.points.mean(axis=0)) if lines.n_points else (0.0, 0.0, 0.0)
-    if not 1e-200 < size < 1e100:
+    if not 1e-150 < size < 1e100:  # squares of shapes are normal numbers
         size = 1.0
     for region in some_regions(size, middle).values():
         assert_flags(whole, region)
