@@ -248,7 +248,8 @@ def readable(value: Any) -> str:
         return f"{value:,}"
     if isinstance(value, float):
         # For points at one place, and others as near: 300 zeros are unreadable.
-        return "less than 1e-30" if 0.0 < abs(value) < 1e-30 else f"{value:.6g}"
+        small, large = 0.0 < abs(value) < 1e-30, 1e99 < value < math.inf
+        return "less than 1e-30" if small else "more than 1e99" if large else f"{value:.6g}"
     if value is None:
         return "none"
     if isinstance(value, dict):
