@@ -12,16 +12,13 @@ from ..errors import FormatError
 from .capsules import capsule_ends
 from .files.archive import check_members
 from .layout import (
-    DIRECTION,
     END_BITS,
-    LATTICE8,
     MAX_POINTS,
     NODE_BYTES,
     PAGE,
-    PLAIN_BYTES,
     SPLINE,
     WIDE,
-    WIDE_HEADER,
+    code_bytes,
     coded_kind,
     unpack,
     unpack_ends,
@@ -29,19 +26,6 @@ from .layout import (
 
 if TYPE_CHECKING:
     from .fibletset import FibletSet
-
-
-def code_bytes(decoding: npt.NDArray[np.uint32]) -> npt.NDArray[np.int64]:
-    """Bytes of codes of each fiblet, ``(n,)``, from its ``decoding`` words ``(n, 3)``."""
-    kind = unpack("kind", decoding)
-    last = unpack("last", decoding).astype(np.int64)
-    step = unpack("step", decoding).astype(np.int64)
-    wide = np.where(kind == WIDE, step & 7, 0)
-    plain = (kind == WIDE) & (wide == 0)
-    width = np.select([plain, wide > 0, kind == LATTICE8], [PLAIN_BYTES, wide, 1], 2)
-    size = last * width + np.where(wide > 0, WIDE_HEADER, 0)
-    size = np.where(wide == SPLINE, (step >> 3) * NODE_BYTES, size)
-    return np.where(kind == DIRECTION, np.maximum(last - 1, 0), size)
 
 
 def check_file(fiblets: FibletSet, path: str | PathLike[str]) -> None:

@@ -122,6 +122,17 @@ def coded_kind(decoding: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     return np.where((kind == WIDE) & (unpack("step", decoding) & 7 == SPLINE), np.uint32(SPLINE), kind)
 
 
+def code_bytes(decoding: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Return the bytes of codes of each fiblet, ``(n,)`` int64, from its ``decoding`` words ``(n, 3)``."""
+    kind, step, last = (unpack(name, decoding).astype(np.int64) for name in ("kind", "step", "last"))
+    width = np.where(kind == WIDE, step & 7, kind)
+    return np.select(
+        [kind == DIRECTION, (kind == WIDE) & (width == 0), width == SPLINE, kind == WIDE],
+        [np.maximum(last - 1, 0), last * PLAIN_BYTES, (step >> 3) * NODE_BYTES, WIDE_HEADER + last * width],
+        last * width,
+    )
+
+
 def unpack(name: str, words: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     """Take one field out of its array."""
     field = FIELDS[name]

@@ -26,7 +26,7 @@ _DRAWN = 1.0 / 54.0  # `curves.py`: the drawn halves leave a cubic by at most th
 
 @kernel
 def find_chains(follower: Int64s, order: Int64s, offsets: Int64s) -> int:
-    """Put segments into the order in which they follow each other, and return how many chains they form."""
+    """Put segments into the order in which they follow each other, and return the number of chains."""
     n = len(follower)
     is_follower, done = np.zeros(n, np.bool_), np.zeros(n, np.bool_)
     for each in follower:

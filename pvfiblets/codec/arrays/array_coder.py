@@ -49,7 +49,7 @@ class ArrayCoder:
         )  # fmt: skip
 
     def gather(self, codes: npt.NDArray[np.uint8], first: Ints, size: Ints, at: Ints, out: Any) -> None:
-        """Copy runs of codes: so many bytes from ``first`` on, to ``at``."""
+        """Copy runs of ``size`` codes from ``first`` to ``at``."""
         place = np.arange(int(size.sum())) - np.repeat(np.cumsum(size) - size, size)
         out[place + np.repeat(at, size)] = codes[place + np.repeat(first, size)]
 

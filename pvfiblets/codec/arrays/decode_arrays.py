@@ -19,6 +19,7 @@ from ..layout import (
     STEP_LEVELS,
     WIDE,
     WIDE_HEADER,
+    code_bytes,
     unpack,
 )
 from .frame_arrays import first_frames, turn, turned_x
@@ -74,11 +75,7 @@ def _decode_batch(
     )
     at = code_base[which >> PAGE_BITS] + unpack("code", records).astype(np.int64)
     plain, spline = ((kind == WIDE) & (step & 7 == width) for width in (0, SPLINE))
-    size = np.select(
-        [kind == DIRECTION, plain, spline, kind == WIDE],
-        [n - 2, (n - 1) * PLAIN_BYTES, (step >> 3) * NODE_BYTES, WIDE_HEADER + (n - 1) * (step & 7)],
-        (n - 1) * kind,
-    )
+    size = code_bytes(records)
     # A record read from a damaged file must not reach beyond the arrays.
     bad = (at < 0) | (at + size > len(codes)) | (to < 0) | (to + n > len(out))
     first = np.flatnonzero(~bad)

@@ -16,10 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..check import code_bytes
 from ..decompress import select_streamlines
 from ..files.archive import forget
-from ..layout import FIELDS, PAGE, PAGE_BITS, WORDS, unpack
+from ..layout import FIELDS, PAGE, PAGE_BITS, WORDS, code_bytes, unpack
 
 if TYPE_CHECKING:
     from ..fibletset import FibletSet

@@ -77,7 +77,7 @@ class CompiledCoder:
         )  # fmt: skip
 
     def gather(self, codes: npt.NDArray[np.uint8], first: Ints, size: Ints, at: Ints, out: Any) -> None:
-        """Copy runs of codes: so many bytes from ``first`` on, to ``at``."""
+        """Copy runs of ``size`` codes from ``first`` to ``at``."""
         _gather(codes, first, size, at, out)
 
     def plan_lattices(self, slots: Ints, end: npt.NDArray[np.uint8], wanted: Ints) -> tuple[Ints, Ints]:

@@ -166,6 +166,7 @@ def _code(
     fiblet_at, code_at = np.cumsum(pieces) - pieces, np.cumsum(size) - size
     total, n_codes = int(pieces.sum()), int(size.sum())
     packed = np.empty(n_codes, np.uint8)
+    # Splines that take more bytes than directions are tails, whose codes stand behind those of the slot before.
     source, tails = slots[:, 0].copy(), np.flatnonzero((kind == WIDE) & (size > slots[:, 1] - 3))
     source[tails] = source[tails - 1] + size[tails - 1]
     coder.gather(codes, source[done], size[done], code_at[done], packed)

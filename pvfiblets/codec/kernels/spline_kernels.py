@@ -36,7 +36,7 @@ _UNBOUND = -2.0
 
 
 def _normal_equations() -> npt.NDArray[np.float64]:
-    """Sums of ff, fg and gg over a piece of n points and so many ahead, where a point is ``d f + e g``."""
+    """Sums of ff, fg and gg by points of a piece and points ahead of it; a point is ``d f + e g``."""
     sums = np.zeros((MAX_POINTS, AHEAD + 1, 3))
     for n in range(1, MAX_POINTS):
         x = np.arange(1, n + 1) / n
